@@ -2442,6 +2442,13 @@ GPROJI_INTERNAL int32_t *gproji_take_ints(gproji_pool *pool, int64_t count) {
     return (int32_t *)gproji_pool_take(pool, count, sizeof(int32_t));
 }
 
+/* Takes a copy of `count` elements. */
+GPROJI_NOINLINE void *gproji_pool_copy(gproji_pool *pool, const void *elements, int64_t count, size_t size) {
+    void *block = gproji_pool_take(pool, count, size);
+    if (block && count) memcpy(block, elements, (size_t)count * size);
+    return block;
+}
+
 /* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
     int32_t last = pool->count - 1;
@@ -2454,7 +2461,7 @@ GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_
 }
 
 /* ============================================================================================================
-   >>error   One door for all failures. Uses platform, number. */
+   >>error   One door for all failures. Uses platform, number, memory. */
 
 GPROJ_API const char *gproj_code_string(gproj_code code) {
     switch (code) { /* no default: compilers tell when a code is missing */
@@ -2532,18 +2539,34 @@ GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, 
     va_end(list);
 }
 
-/* All failures of the library come here: a place for a breakpoint. The first error stays. `error` may be NULL. */
-GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
-                                       const char *format, ...) {
-    va_list list;
+/* Every failure of the library passes through here: a place for a breakpoint. The first error stays. `error` may be
+   NULL. Returns the code. */
+GPROJI_INTERNAL gproj_code gproji_fail_list(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
+                                            const char *format, va_list list) {
     if (!error || error->code != GPROJ_OK) return code;
     error->code = code;
     error->place = place;
     error->index = index;
-    va_start(list, format);
     gproji_format_list(error->message, sizeof error->message, format, list);
+    return code;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
+                                       const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    gproji_fail_list(error, code, place, index, format, list);
     va_end(list);
     return code;
+}
+
+/* Refuses an argument that belongs to no element. */
+GPROJI_INTERNAL gproj_code gproji_refuse(gproj_error *error, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    gproji_fail_list(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, format, list);
+    va_end(list);
+    return GPROJ_ERROR_ARGUMENT;
 }
 
 /* Copies another object's error to the caller's, which may be NULL. */
@@ -2559,6 +2582,20 @@ GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
     error->index = -1;
+}
+
+/* Begins a public function: clears the error; false, and an error about `noun`, if the argument is NULL. */
+GPROJI_NOINLINE bool gproji_given(const void *argument, const char *noun, gproj_error *error) {
+    gproji_error_clear(error);
+    if (!argument) gproji_refuse(error, "the %s is NULL", noun);
+    return argument != NULL;
+}
+
+/* Takes an object's struct from a new heap, as gproji_create_object does; fails without memory. */
+GPROJI_NOINLINE void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
+    void *object = gproji_create_object(host, size);
+    if (!object) gproji_fail_memory(error);
+    return object;
 }
 
 /* ============================================================================================================
@@ -12417,32 +12454,50 @@ enum {
     GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
 };
 
-/* Owns a gproj_mesh: the arrays that `mesh` shows read-only, whose lengths follow from the counts there. */
+/* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     gproj_mesh mesh;
-    int32_t *vertex_halfedge;
-    int32_t *face_halfedge;
-    int32_t *face_degree;
-    int32_t *loop_halfedge;
-    int32_t *halfedge; /* 6 * halfedge_count: twin, next, prev, origin, face, edge one after the other */
-    int32_t *polyline_start;
-    int32_t *polyline_vertex;
+    int32_t *links; /* from vertex_halfedge to edge, one after the other: see gproji_mesh_show */
 } gproji_mesh_object;
 
 GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
     return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
 }
 
-/* Polygons without adjacency: the builder's input. */
+/* Polygons without adjacency, and polylines: the builder's input. */
 typedef struct gproji_soup {
     int32_t vertex_count;
     int32_t face_count;
     int32_t corner_count; /* set by gproji_mesh_build */
+    int32_t polyline_count;
     const double *position;
     const int32_t *face_degree;
     const int32_t *face_vertex;
+    const int32_t *polyline_start; /* polyline_count + 1, the first one 0 */
+    const int32_t *polyline_vertex;
 } gproji_soup;
+
+/* A soup in arrays of its own, for those who make polygons. */
+typedef struct gproji_draft {
+    gproji_soup soup; /* shows the arrays; counts begin at 0 */
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+} gproji_draft;
+
+/* Takes room for at most these counts; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, int64_t vertices, int64_t faces,
+                                       int64_t corners, int64_t polylines, int64_t polyline_vertices) {
+    memset(draft, 0, sizeof *draft);
+    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
+    draft->soup.face_degree = draft->degree = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
+    draft->soup.face_vertex = draft->corner = (int32_t *)gproji_pool_take(pool, corners, sizeof(int32_t));
+    draft->soup.polyline_start = draft->start = (int32_t *)gproji_pool_take(pool, polylines + 1, sizeof(int32_t));
+    draft->soup.polyline_vertex = draft->vertex = (int32_t *)gproji_pool_take(pool, polyline_vertices, sizeof(int32_t));
+    if (draft->start) draft->start[0] = 0;
+    return !pool->failed;
+}
 
 /* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
@@ -12607,24 +12662,24 @@ GPROJI_INTERNAL gproj_code gproji_mesh_orient(const gproji_soup *soup, gproji_me
 
 /* -- half-edges -- */
 
-/* Takes the arrays whose lengths are known, and shows them in the public struct. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_mesh_take(gproji_mesh_object *object) {
+/* Counts the integers in `links`. */
+GPROJI_INLINE int64_t gproji_mesh_links(const gproj_mesh *mesh) {
+    return mesh->vertex_count + 2 * (int64_t)mesh->face_count + 6 * (int64_t)mesh->halfedge_count;
+}
+
+/* Shows `links` in the public struct. */
+GPROJI_INTERNAL void gproji_mesh_show(gproji_mesh_object *object) {
     gproj_mesh *mesh = &object->mesh;
-    size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, n = (size_t)mesh->halfedge_count;
-    mesh->position = (double *)gproji_take(&object->heap, vertices, 3 * sizeof(double));
-    mesh->vertex_halfedge = object->vertex_halfedge = (int32_t *)gproji_take(&object->heap, vertices, sizeof(int32_t));
-    mesh->face_halfedge = object->face_halfedge = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    mesh->face_degree = object->face_degree = (int32_t *)gproji_take(&object->heap, faces, sizeof(int32_t));
-    mesh->twin = object->halfedge = (int32_t *)gproji_take(&object->heap, n, 6 * sizeof(int32_t));
-    if (!mesh->position || !mesh->vertex_halfedge || !mesh->face_halfedge || !mesh->face_degree || !mesh->twin) {
-        return false;
-    }
+    size_t n = (size_t)mesh->halfedge_count;
+    mesh->vertex_halfedge = object->links;
+    mesh->face_halfedge = mesh->vertex_halfedge + mesh->vertex_count;
+    mesh->face_degree = mesh->face_halfedge + mesh->face_count;
+    mesh->twin = mesh->face_degree + mesh->face_count;
     mesh->next = mesh->twin + n;
     mesh->prev = mesh->next + n;
     mesh->origin = mesh->prev + n;
     mesh->face = mesh->origin + n;
     mesh->edge = mesh->face + n;
-    return true;
 }
 
 /* The half-edge of corner c: even at the first corner of the edge, odd at the second. */
@@ -12648,9 +12703,10 @@ GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) 
 GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gproji_mesh_work *work,
                                             gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
-    int32_t n = mesh->halfedge_count, h, f, c, v, *out = object->vertex_halfedge, *outgoing = work->mark;
-    int32_t *twin = object->halfedge, *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n,
-            *edge = face + n;
+    int32_t n = mesh->halfedge_count, h, f, c, v, *outgoing = work->mark;
+    int32_t *out = object->links, *face_halfedge = out + mesh->vertex_count;
+    int32_t *face_degree = face_halfedge + mesh->face_count, *twin = face_degree + mesh->face_count;
+    int32_t *next = twin + n, *prev = next + n, *origin = prev + n, *face = origin + n, *edge = face + n;
     /* 1. Half-edges in faces. Their twins at the boundary keep face -1 and get an origin only. */
     for (h = 0; h < n; ++h) {
         twin[h] = h ^ 1;
@@ -12658,8 +12714,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
         next[h] = prev[h] = face[h] = -1;
     }
     for (f = 0; f < mesh->face_count; ++f) {
-        object->face_degree[f] = work->face_start[f + 1] - work->face_start[f];
-        object->face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
+        face_degree[f] = work->face_start[f + 1] - work->face_start[f];
+        face_halfedge[f] = gproji_corner_halfedge(work, work->face_start[f]);
         for (c = work->face_start[f]; c < work->face_start[f + 1]; ++c) {
             int32_t following = gproji_corner_halfedge(work, work->corner_next[c]);
             h = gproji_corner_halfedge(work, c);
@@ -12710,7 +12766,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_link(gproji_mesh_object *object, const gp
 GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const gproji_soup *soup,
                                                gproji_mesh_work *work, gproj_error *error) {
     gproj_mesh *mesh = &object->mesh;
-    int32_t h, i, f, k, c = 0, *loop = work->slot;
+    gproji_pool *pool = &object->pool;
+    int32_t h, i, f, k, c = 0, *loop = work->slot, polylines = soup->polyline_count;
     gproj_code code;
     /* 1. Corners. mark[v] is the last face that named vertex v. */
     gproji_fill(work->mark, soup->vertex_count, -1);
@@ -12742,22 +12799,26 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     if (!code && mesh->reoriented_count) code = gproji_mesh_match(soup, work, &mesh->edge_count, error);
     if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
-    if (!gproji_mesh_take(object)) return gproji_fail_memory(error);
-    memcpy(mesh->position, soup->position, (size_t)soup->vertex_count * 3 * sizeof(double));
+    mesh->position = (double *)gproji_pool_copy(pool, soup->position, soup->vertex_count, 3 * sizeof(double));
+    object->links = (int32_t *)gproji_pool_take(pool, gproji_mesh_links(mesh), sizeof(int32_t));
+    if (pool->failed) return gproji_fail_memory(error);
+    gproji_mesh_show(object);
     code = gproji_mesh_link(object, work, error);
     if (code) return code;
-    /* 3. Boundary loops by their lowest half-edges. A vertex is in one at most, so `slot` has room for all. */
+    /* 3. Boundary loops by their lowest half-edges (a vertex is in one at most, so `slot` has room), and polylines. */
     gproji_fill(work->mark, mesh->vertex_count, 0);
     for (h = 0; h < mesh->halfedge_count; ++h) {
         if (mesh->face[h] >= 0 || work->mark[mesh->origin[h]]) continue;
         for (i = h; !work->mark[mesh->origin[i]]; i = mesh->next[i]) work->mark[mesh->origin[i]] = 1;
         loop[mesh->loop_count++] = h;
     }
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, (size_t)mesh->loop_count, sizeof(int32_t));
-    if (!object->loop_halfedge) return gproji_fail_memory(error);
-    memcpy(object->loop_halfedge, loop, (size_t)mesh->loop_count * sizeof(int32_t));
-    mesh->loop_halfedge = object->loop_halfedge;
-    return GPROJ_OK;
+    mesh->loop_halfedge = (int32_t *)gproji_pool_copy(pool, loop, mesh->loop_count, sizeof(int32_t));
+    mesh->polyline_count = polylines;
+    mesh->polyline_start =
+        (int32_t *)gproji_pool_copy(pool, soup->polyline_start, (int64_t)polylines + 1, sizeof(int32_t));
+    mesh->polyline_vertex =
+        (int32_t *)gproji_pool_copy(pool, soup->polyline_vertex, soup->polyline_start[polylines], sizeof(int32_t));
+    return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
 /* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
@@ -12801,61 +12862,20 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
     work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
     work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
-    code = work.corner_vertex && work.corner_face && work.corner_next && work.corner_edge && work.corner_order &&
-                   work.edge_corner && work.face_start && work.face_state && work.mark && work.slot
-               ? gproji_mesh_connect(object, soup, &work, error)
-               : gproji_fail_memory(error);
+    code = pool.failed ? gproji_fail_memory(error) : gproji_mesh_connect(object, soup, &work, error);
     gproji_pool_give_all(&pool);
     return code;
 }
 
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
     gproji_mesh_object *object;
-    gproji_heap *heap;
-    size_t vertices, faces;
     if (!mesh) return;
     object = gproji_mesh_owner(mesh);
-    heap = &object->heap;
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count;
-    if (object->polyline_start) {
-        size_t corners = (size_t)object->polyline_start[mesh->polyline_count];
-        gproji_give(heap, object->polyline_vertex, corners, sizeof(int32_t));
-        gproji_give(heap, object->polyline_start, (size_t)mesh->polyline_count + 1, sizeof(int32_t));
-    }
-    gproji_give(heap, mesh->position, vertices, 3 * sizeof(double));
-    gproji_give(heap, object->vertex_halfedge, vertices, sizeof(int32_t));
-    gproji_give(heap, object->face_halfedge, faces, sizeof(int32_t));
-    gproji_give(heap, object->face_degree, faces, sizeof(int32_t));
-    gproji_give(heap, object->loop_halfedge, (size_t)mesh->loop_count, sizeof(int32_t));
-    gproji_give(heap, object->halfedge, (size_t)mesh->halfedge_count, 6 * sizeof(int32_t));
+    gproji_pool_give_all(&object->pool);
     gproji_destroy_object(object, sizeof *object);
 }
 
-/* Stores polylines: `start` has count + 1 entries, start[0] = 0. */
-GPROJI_INTERNAL gproj_code gproji_mesh_set_polylines(gproji_mesh_object *object, int32_t count, const int32_t *start,
-                                                     const int32_t *vertex, gproj_error *error) {
-    gproj_mesh *mesh = &object->mesh;
-    size_t total = count ? (size_t)start[count] : 0;
-    object->polyline_vertex = (int32_t *)gproji_take(&object->heap, total, sizeof(int32_t));
-    if (!object->polyline_vertex) return gproji_fail_memory(error);
-    object->polyline_start = (int32_t *)gproji_take(&object->heap, (size_t)count + 1, sizeof(int32_t));
-    if (!object->polyline_start) {
-        /* gproj_mesh_destroy cannot give polyline_vertex back, for polyline_start has the length */
-        gproji_give(&object->heap, object->polyline_vertex, total, sizeof(int32_t));
-        object->polyline_vertex = NULL;
-        return gproji_fail_memory(error);
-    }
-    object->polyline_start[0] = 0;
-    if (count) {
-        memcpy(object->polyline_start, start, ((size_t)count + 1) * sizeof(int32_t));
-        memcpy(object->polyline_vertex, vertex, total * sizeof(int32_t));
-    }
-    mesh->polyline_count = count;
-    mesh->polyline_start = object->polyline_start, mesh->polyline_vertex = object->polyline_vertex;
-    return GPROJ_OK;
-}
-
-/* Ends every function that makes a mesh: returns the mesh, or NULL and keeps nothing. */
+/* Ends every function that makes a mesh from a soup: returns the mesh, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
     if (!code) return &object->mesh;
     gproj_mesh_destroy(&object->mesh);
@@ -12863,68 +12883,53 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
 }
 
 GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object));
-    gproji_error_clear(error);
-    if (!object) gproji_fail_memory(error);
+    gproji_mesh_object *object = (gproji_mesh_object *)gproji_begin_object(host, sizeof(gproji_mesh_object), error);
+    if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error) {
+    static const int32_t none = 0;
     gproji_soup soup;
     gproji_mesh_object *object;
-    gproj_code code;
     gproji_error_clear(error);
     if (vertex_count < 1 || face_count < 0) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+        gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
+                      face_count);
         return NULL;
     }
     if (!position || (face_count && (!face_degree || !face_vertex))) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "an array of the mesh is NULL");
+        gproji_refuse(error, "an array of the mesh is NULL");
         return NULL;
     }
-    soup.vertex_count = vertex_count, soup.face_count = face_count, soup.corner_count = 0;
+    memset(&soup, 0, sizeof soup);
+    soup.vertex_count = vertex_count, soup.face_count = face_count, soup.polyline_start = &none;
     soup.position = position, soup.face_degree = face_degree, soup.face_vertex = face_vertex;
     object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
-    code = gproji_mesh_build(object, &soup, error);
-    if (!code) code = gproji_mesh_set_polylines(object, 0, NULL, NULL, error);
-    return gproji_mesh_done(object, code);
+    return object ? gproji_mesh_done(object, gproji_mesh_build(object, &soup, error)) : NULL;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
+    gproji_pool *pool;
     gproj_mesh *copy;
-    gproj_code code;
-    size_t vertices, faces, loops;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to copy is NULL");
-        return NULL;
-    }
+    int64_t polylines;
+    if (!gproji_given(mesh, "mesh to copy", error)) return NULL;
     object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
-    copy = &object->mesh;
+    copy = &object->mesh, pool = &object->pool;
     *copy = *mesh;
-    copy->polyline_count = 0; /* set below, when there is memory for them */
-    vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, loops = (size_t)mesh->loop_count;
-    object->loop_halfedge = (int32_t *)gproji_take(&object->heap, loops, sizeof(int32_t));
-    copy->loop_halfedge = object->loop_halfedge;
-    code = gproji_mesh_take(object) && object->loop_halfedge
-               ? gproji_mesh_set_polylines(object, mesh->polyline_count, mesh->polyline_start, mesh->polyline_vertex,
-                                           error)
-               : gproji_fail_memory(error);
-    if (!code) {
-        memcpy(copy->position, mesh->position, vertices * 3 * sizeof(double));
-        memcpy(object->vertex_halfedge, mesh->vertex_halfedge, vertices * sizeof(int32_t));
-        memcpy(object->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
-        memcpy(object->face_degree, mesh->face_degree, faces * sizeof(int32_t));
-        memcpy(object->loop_halfedge, mesh->loop_halfedge, loops * sizeof(int32_t));
-        memcpy(object->halfedge, mesh->twin, (size_t)mesh->halfedge_count * 6 * sizeof(int32_t));
-    }
-    return gproji_mesh_done(object, code);
+    polylines = mesh->polyline_count;
+    copy->position = (double *)gproji_pool_copy(pool, mesh->position, mesh->vertex_count, 3 * sizeof(double));
+    object->links = (int32_t *)gproji_pool_copy(pool, mesh->vertex_halfedge, gproji_mesh_links(mesh), sizeof(int32_t));
+    copy->loop_halfedge = (int32_t *)gproji_pool_copy(pool, mesh->loop_halfedge, mesh->loop_count, sizeof(int32_t));
+    copy->polyline_start = (int32_t *)gproji_pool_copy(pool, mesh->polyline_start, polylines + 1, sizeof(int32_t));
+    copy->polyline_vertex =
+        (int32_t *)gproji_pool_copy(pool, mesh->polyline_vertex, mesh->polyline_start[polylines], sizeof(int32_t));
+    if (!pool->failed) gproji_mesh_show(object);
+    return gproji_mesh_done(object, pool->failed ? gproji_fail_memory(error) : GPROJ_OK);
 }
 
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh) {
@@ -13069,6 +13074,14 @@ typedef struct gproji_old_file {
 #endif
 } gproji_old_file;
 
+/* The length of a path's folder, with the separator at its end. */
+GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
+    const char *separators = GPROJI_FILES == 2 ? "/\\:" : "/";
+    size_t length = strlen(path);
+    while (length > 0 && !strchr(separators, path[length - 1])) --length;
+    return length;
+}
+
 #if GPROJI_FILES == 1
 
 #if defined(__STRICT_ANSI__) && !defined(__cplusplus) /* headers hide these under -std=c99 */
@@ -13138,12 +13151,6 @@ GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
 GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
     old->exists = stat(path, &old->info) == 0;
     old->regular = old->exists && S_ISREG(old->info.st_mode);
-}
-
-/* The length of a path's folder, with the slash at its end. */
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
 /* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
@@ -13259,19 +13266,6 @@ GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) 
     old->regular = old->exists && !(attributes & (directory | device));
 }
 
-/* The length of a path's folder, with the separator at its end. */
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    size_t length = strlen(path);
-    while (length > 0 && !strchr("/\\:", path[length - 1])) --length;
-    return length;
-}
-
-/* MoveFileEx replaces a link itself. */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
-    (void)path;
-    return true;
-}
-
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
 
 #else
@@ -13323,19 +13317,13 @@ GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) 
     old->exists = old->regular = false;
 }
 
-GPROJI_INTERNAL size_t gproji_folder_length(const char *path) {
-    const char *slash = strrchr(path, '/');
-    return slash ? (size_t)(slash - path) + 1 : 0;
-}
-
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
-    (void)path;
-    return true;
-}
-
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
 
 #endif /* GPROJI_FILES */
+
+#if GPROJI_FILES != 1 /* MoveFileEx replaces a link itself; plain C knows none */
+GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) { return path != NULL; }
+#endif
 
 /* A save under way. */
 typedef struct gproji_saving {
@@ -13407,6 +13395,7 @@ typedef struct gproji_reader {
     const char *word; /* the last word scanned, not NUL-terminated */
     size_t word_size;
     gproji_heap *heap;
+    gproj_code code; /* the first failure; nothing is read after it */
     gproj_error *error;
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
@@ -13414,6 +13403,17 @@ typedef struct gproji_reader {
     gproji_ints face_vertex; /* from 0; in an OBJ they may point forward until all is read */
     gproji_ints polyline_start, polyline_vertex, polyline_line;
 } gproji_reader;
+
+/* Stops reading with an error at a line, which begins the sentence. */
+GPROJI_INTERNAL void gproji_stop(gproji_reader *reader, gproj_code code, int32_t line, const char *format, ...) {
+    char sentence[GPROJ_MESSAGE_SIZE];
+    va_list list;
+    if (reader->code) return;
+    va_start(list, format);
+    gproji_format_list(sentence, sizeof sentence, format, list);
+    va_end(list);
+    reader->code = gproji_fail(reader->error, code, GPROJ_PLACE_LINE, line, "line %d: %s", line, sentence);
+}
 
 /* -- words and lines -- */
 
@@ -13496,167 +13496,138 @@ GPROJI_INTERNAL const char *gproji_quote(const gproji_reader *reader, char quote
 /* -- numbers and elements -- */
 
 /* Reads the word as a number. */
-GPROJI_INTERNAL gproj_code gproji_word_number(gproji_reader *reader, double *value) {
+GPROJI_INTERNAL double gproji_word_number(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
-    size_t used = gproj_number_read(reader->word, reader->word_size, value);
-    if (used && used == reader->word_size) return GPROJ_OK;
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: '%s' is not a number%s", reader->line, gproji_quote(reader, quote),
-                       used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
+    double value = 0;
+    size_t used = gproj_number_read(reader->word, reader->word_size, &value);
+    if (!used || used != reader->word_size)
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' is not a number%s", gproji_quote(reader, quote),
+                    used && reader->word[used] == ',' ? "; write decimals with a point, not a comma" : "");
+    return value;
 }
 
 /* Reads the word as an integer, clamped to +-10^12. With `slashes`, texture and normal behind a '/' are passed over. */
-GPROJI_INTERNAL gproj_code gproji_word_index(gproji_reader *reader, bool slashes, int64_t *value) {
+GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
     const char *word = reader->word;
     char quote[GPROJI_QUOTE_SIZE];
-    size_t i = 0, digits;
-    bool negative = word[0] == '-';
-    if (word[0] == '-' || word[0] == '+') ++i;
-    *value = 0;
-    for (digits = i; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
-        if (*value < INT64_C(100000000000)) *value = *value * 10 + (word[i] - '0');
+    size_t i = word[0] == '-' || word[0] == '+', digits = i;
+    int64_t value = 0;
+    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
+        if (value < INT64_C(100000000000)) value = value * 10 + (word[i] - '0');
     }
-    if (i > digits && (i == reader->word_size || (slashes && word[i] == '/'))) {
-        if (negative) *value = -*value;
+    if (i > digits && slashes && i < reader->word_size && word[i] == '/') {
         while (i < reader->word_size && (gproji_is_digit(word[i]) || word[i] == '/' || word[i] == '-')) ++i;
-        if (i == reader->word_size) return GPROJ_OK;
     }
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line, "line %d: '%s' is not %s",
-                       reader->line, gproji_quote(reader, quote),
-                       slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
+    if (i == digits || i < reader->word_size)
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' is not %s", gproji_quote(reader, quote),
+                    slashes ? "a vertex index (such as 7, -1 or 7/1/3)" : "a whole number");
+    return word[0] == '-' ? -value : value;
 }
 
 /* Appends to one of the reader's arrays. */
-GPROJI_INTERNAL gproj_code gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
-    if (gproji_ints_add(reader->heap, ints, value)) return GPROJ_OK;
-    if (ints->count < GPROJI_INTS_MAX) return gproji_fail_memory(reader->error);
-    return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text has too many elements; split the mesh", reader->line);
+GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
+    if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
+    if (ints->count < GPROJI_INTS_MAX)
+        reader->code = gproji_fail_memory(reader->error);
+    else
+        gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "the text has too many elements; split the mesh");
 }
 
-GPROJI_INTERNAL gproj_code gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
+GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
     void *block = reader->position;
-    if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, line,
-                           "line %d: more than %d vertices; split the mesh", line, (int32_t)GPROJI_VERTICES_MAX);
-    }
+    if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX)
+        gproji_stop(reader, GPROJ_ERROR_SIZE, line, "more than %d vertices; split the mesh",
+                    (int32_t)GPROJI_VERTICES_MAX);
+    gproji_push(reader, &reader->vertex_line, line);
+    if (reader->code) return;
     if (!gproji_reserve(reader->heap, &block, &reader->position_capacity, reader->vertex_count + 1,
                         3 * sizeof(double))) {
-        return gproji_fail_memory(reader->error);
+        reader->code = gproji_fail_memory(reader->error);
+        return;
     }
     reader->position = (double *)block;
-    gproji_copy3(x, reader->position + 3 * reader->vertex_count);
-    reader->vertex_count++;
-    return gproji_push(reader, &reader->vertex_line, line);
+    gproji_copy3(x, reader->position + 3 * reader->vertex_count++);
 }
 
 /* Appends a face; the caller appends the corners. */
-GPROJI_INTERNAL gproj_code gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
-    gproj_code code;
-    if (degree < 3) {
-        return gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                           "line %d: a face with %d corners; a face needs at least 3", line,
-                           (int32_t)(degree < -9 ? -9 : degree));
-    }
+GPROJI_INTERNAL void gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
+    if (degree < 3)
+        gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a face with %d corners; a face needs at least 3",
+                    (int32_t)(degree < -9 ? -9 : degree));
     /* no text has the corners for a degree beyond int32_t, so a wrong number here is never used */
-    code = gproji_push(reader, &reader->face_degree, (int32_t)degree);
-    return code ? code : gproji_push(reader, &reader->face_line, line);
+    gproji_push(reader, &reader->face_degree, (int32_t)degree);
+    gproji_push(reader, &reader->face_line, line);
 }
 
 /* -- OBJ -- */
 
-/* Appends the indices in an f or l line, counted from 0, to `ints`; *count is their number. */
-GPROJI_INTERNAL gproj_code gproji_obj_indices(gproji_reader *reader, gproji_ints *ints, int32_t *count) {
-    int64_t index, vertices = (int64_t)reader->vertex_count;
-    gproj_code code;
-    *count = 0;
-    while (gproji_next_word(reader)) {
-        code = gproji_word_index(reader, true, &index);
-        if (code) return code;
-        if (index == 0) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index 0; the vertices of an OBJ text count from 1", reader->line);
-        }
-        if (index < 0 && index + vertices < 0) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index %l, but only %l vertices stand above", reader->line, index, vertices);
-        }
+/* Appends the indices in an f or l line, counted from 0, to `ints`. Returns their number. */
+GPROJI_INTERNAL int32_t gproji_obj_indices(gproji_reader *reader, gproji_ints *ints) {
+    int64_t vertices = (int64_t)reader->vertex_count;
+    int32_t count = 0;
+    for (; !reader->code && gproji_next_word(reader); ++count) {
         /* negative ones count back from here; positive ones may point forward: gproji_obj_check_indices */
-        index = index < 0 ? index + vertices : index - 1;
-        if (index >= GPROJI_VERTICES_MAX) {
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: index %l is larger than any number of vertices can be", reader->line,
-                               index + 1);
-        }
-        code = gproji_push(reader, ints, (int32_t)index);
-        if (code) return code;
-        ++*count;
+        int64_t index = gproji_word_index(reader, true), place = index < 0 ? index + vertices : index - 1;
+        if (index == 0)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index 0; the vertices of an OBJ text count from 1");
+        if (place < 0)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but only %l vertices stand above", index,
+                        vertices);
+        if (place >= GPROJI_VERTICES_MAX)
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line,
+                        "index %l is larger than any number of vertices can be", index);
+        gproji_push(reader, ints, (int32_t)place);
     }
-    return GPROJ_OK;
+    return count;
 }
 
 /* Refuses indices beyond the vertices. Element e has degree[e] of them, or ends before number end[e + 1]. */
-GPROJI_INTERNAL gproj_code gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints,
-                                                    const gproji_ints *line, const int32_t *degree,
-                                                    const int32_t *end) {
+GPROJI_INTERNAL void gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints, const gproji_ints *line,
+                                              const int32_t *degree, const int32_t *end) {
     size_t e, c = 0;
-    for (e = 0; e < line->count; ++e) {
+    for (e = 0; e < line->count && !reader->code; ++e) {
         size_t stop = degree ? c + (size_t)degree[e] : (size_t)end[e + 1];
-        for (; c < stop; ++c) {
-            if ((size_t)ints->data[c] < reader->vertex_count) continue;
-            return gproji_fail(reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, line->data[e],
-                               "line %d: index %d, but the text has %d vertices", line->data[e], ints->data[c] + 1,
-                               (int32_t)reader->vertex_count);
-        }
+        for (; c < stop; ++c)
+            if ((size_t)ints->data[c] >= reader->vertex_count)
+                gproji_stop(reader, GPROJ_ERROR_INDEX, line->data[e], "index %d, but the text has %d vertices",
+                            ints->data[c] + 1, (int32_t)reader->vertex_count);
     }
-    return GPROJ_OK;
 }
 
-GPROJI_INTERNAL gproj_code gproji_read_obj(gproji_reader *reader) {
-    gproj_code code = gproji_push(reader, &reader->polyline_start, 0);
+GPROJI_INTERNAL void gproji_read_obj(gproji_reader *reader) {
     bool more = true;
     /* Lines that begin with v, f or l; all others are passed over. */
-    for (; more && !code; more = gproji_next_line(reader)) {
+    for (; more && !reader->code; more = gproji_next_line(reader)) {
         int32_t count = 0, line;
         if (!gproji_next_word(reader)) continue;
         line = reader->line;
         if (gproji_word_is(reader, "v")) {
             /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
-            double number = 0, x[3] = {0, 0, 0};
-            while (!code && gproji_next_word(reader)) {
-                code = gproji_word_number(reader, &number);
+            double x[3] = {0, 0, 0};
+            while (!reader->code && gproji_next_word(reader)) {
+                double number = gproji_word_number(reader);
                 if (count < 3) x[count] = number;
                 if (count < 8) ++count;
             }
-            if (!code && count != 3 && count != 4 && count != 6 && count != 7) {
-                code = gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                                   "line %d: a vertex with %s%d numbers; write 'v x y z'", line,
-                                   count == 8 ? "more than " : "", count == 8 ? 7 : count);
-            }
-            if (!code) code = gproji_push_vertex(reader, x, line);
+            if (count != 3 && count != 4 && count != 6 && count != 7)
+                gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %s%d numbers; write 'v x y z'",
+                            count == 8 ? "more than " : "", count == 8 ? 7 : count);
+            gproji_push_vertex(reader, x, line);
         } else if (gproji_word_is(reader, "f")) {
-            code = gproji_obj_indices(reader, &reader->face_vertex, &count);
-            if (!code) code = gproji_push_face(reader, count, line);
+            gproji_push_face(reader, gproji_obj_indices(reader, &reader->face_vertex), line);
         } else if (gproji_word_is(reader, "l")) {
-            code = gproji_obj_indices(reader, &reader->polyline_vertex, &count);
-            if (!code && count < 2) {
-                code = gproji_fail(reader->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, line,
-                                   "line %d: a polyline with %d points; it needs at least 2", line, count);
-            }
-            if (!code) code = gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
-            if (!code) code = gproji_push(reader, &reader->polyline_line, line);
+            count = gproji_obj_indices(reader, &reader->polyline_vertex);
+            if (count < 2)
+                gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a polyline with %d points; it needs at least 2",
+                            count);
+            gproji_push(reader, &reader->polyline_start, (int32_t)reader->polyline_vertex.count);
+            gproji_push(reader, &reader->polyline_line, line);
         }
     }
     /* Indices may point forward, so they are compared with the vertex count when that is known. */
-    if (!code) {
-        code =
-            gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
-    }
-    if (!code) {
-        code = gproji_obj_check_indices(reader, &reader->polyline_vertex, &reader->polyline_line, NULL,
-                                        reader->polyline_start.data);
-    }
-    return code;
+    gproji_obj_check_indices(reader, &reader->face_vertex, &reader->face_line, reader->face_degree.data, NULL);
+    gproji_obj_check_indices(reader, &reader->polyline_vertex, &reader->polyline_line, NULL,
+                             reader->polyline_start.data);
 }
 
 /* -- OFF -- */
@@ -13674,90 +13645,76 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
     return size - i == 3 && !memcmp(word + i, "OFF", 3);
 }
 
-GPROJI_INTERNAL gproj_code gproji_fail_cut_off(gproji_reader *reader, int64_t count, int64_t promised,
-                                               const char *noun) {
-    return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                       "line %d: the text ends after %l of %l %s; it seems to be cut off", reader->line, count,
-                       promised, noun);
+/* Goes to the next word anywhere; stops if the text ends after `count` elements. */
+GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64_t promised, const char *noun) {
+    if (!reader->code && !gproji_next_word_anywhere(reader))
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "the text ends after %l of %l %s; it seems to be cut off",
+                    count, promised, noun);
+    return !reader->code;
+}
+
+/* Reads a vertex's line: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
+GPROJI_INTERNAL void gproji_off_vertex(gproji_reader *reader) {
+    double x[3] = {0, 0, 0};
+    int32_t k, line = reader->line;
+    for (k = 0; k < 3 && !reader->code; ++k) {
+        if (k && !gproji_next_word(reader))
+            gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
+        else
+            x[k] = gproji_word_number(reader);
+    }
+    gproji_next_line(reader);
+    gproji_push_vertex(reader, x, line);
 }
 
 /* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
-GPROJI_INTERNAL gproj_code gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree, index, k, vertices = (int64_t)reader->vertex_count;
-    gproj_code code = gproji_word_index(reader, false, &degree);
-    if (!code) code = gproji_push_face(reader, degree, reader->line);
-    for (k = 0; !code && k < degree; ++k) {
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, face, faces, "faces");
-        code = gproji_word_index(reader, false, &index);
-        if (code) return code;
-        if (index < 0 || index >= vertices) {
+GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
+    int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
+    gproji_push_face(reader, degree, reader->line);
+    for (k = 0; k < degree && gproji_off_word(reader, face, faces, "faces"); ++k) {
+        index = gproji_word_index(reader, false);
+        if (!reader->code && (index < 0 || index >= vertices)) {
             /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
             bool from_one = index == vertices;
             size_t c;
             for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
-            return gproji_fail(
-                reader->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, reader->line,
-                "line %d: index %l, but the vertices are 0 to %l%s", reader->line, index, vertices - 1,
-                from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index" : "");
+            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
+                        vertices - 1,
+                        from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
+                                 : "");
         }
-        code = gproji_push(reader, &reader->face_vertex, (int32_t)index);
+        gproji_push(reader, &reader->face_vertex, (int32_t)index);
     }
-    if (!code) gproji_next_line(reader);
-    return code;
+    gproji_next_line(reader);
 }
 
-GPROJI_INTERNAL gproj_code gproji_read_off(gproji_reader *reader) {
+GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
     int64_t count[2] = {0, 0}, i;
     bool plain, have_word = gproji_next_word_anywhere(reader);
-    int32_t k, line;
-    gproj_code code = GPROJ_OK;
+    int32_t k;
     /* 1. The word OFF, which may be missing if the counts are there. */
     if (have_word && gproji_is_off_word(reader, &plain)) {
         have_word = gproji_next_word_anywhere(reader);
-        if (!plain || (have_word && gproji_word_is(reader, "BINARY"))) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: %s; save it as plain OFF", reader->line,
-                               plain ? "a binary OFF file" : "an OFF file of another dimension than 3");
-        }
+        if (!plain || (have_word && gproji_word_is(reader, "BINARY")))
+            gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "%s; save it as plain OFF",
+                        plain ? "a binary OFF file" : "an OFF file of another dimension than 3");
     } else if (have_word && !gproji_is_digit(reader->word[0])) {
-        return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                           "line %d: '%s' where an OFF text says OFF", reader->line, gproji_quote(reader, quote));
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "'%s' where an OFF text says OFF",
+                    gproji_quote(reader, quote));
     }
     /* 2. Counts of vertices and faces; that of edges, which many writers leave 0, is passed over. */
-    for (k = 0; k < 2; ++k) {
-        if (k) have_word = gproji_next_word_anywhere(reader);
-        if (!have_word) return gproji_fail_cut_off(reader, k, 2, "counts");
-        code = gproji_word_index(reader, false, &count[k]);
-        if (code) return code;
-        if (count[k] < 0 || count[k] > GPROJI_VERTICES_MAX) {
-            return gproji_fail(reader->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, reader->line,
-                               "line %d: a count of %l %s", reader->line, count[k], k ? "faces" : "vertices");
-        }
+    for (k = 0; k < 2 && ((have_word && k == 0) || gproji_off_word(reader, k, 2, "counts")); ++k) {
+        count[k] = gproji_word_index(reader, false);
+        if (count[k] < 0 || count[k] > GPROJI_VERTICES_MAX)
+            gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "a count of %l %s", count[k], k ? "faces" : "vertices");
     }
     gproji_next_line(reader);
-    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
-    for (i = 0; i < count[0] && !code; ++i) {
-        double x[3];
-        if (!gproji_next_word_anywhere(reader)) return gproji_fail_cut_off(reader, i, count[0], "vertices");
-        line = reader->line;
-        for (k = 0; k < 3; ++k) {
-            if (k && !gproji_next_word(reader)) {
-                return gproji_fail(reader->error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, line,
-                                   "line %d: a vertex with %d numbers; write x y z on one line", line, k);
-            }
-            code = gproji_word_number(reader, &x[k]);
-            if (code) return code;
-        }
-        gproji_next_line(reader);
-        code = gproji_push_vertex(reader, x, line);
-    }
+    /* 3. Vertices, a line each. */
+    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) gproji_off_vertex(reader);
     /* 4. Faces: the degree, then the corners. */
-    for (i = 0; i < count[1] && !code; ++i) {
-        code = gproji_next_word_anywhere(reader) ? gproji_off_face(reader, i, count[1])
-                                                 : gproji_fail_cut_off(reader, i, count[1], "faces");
-    }
-    return code;
+    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
+        gproji_off_face(reader, i, count[1]);
 }
 
 /* -- reading -- */
@@ -13808,9 +13765,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
             else
                 reader->at++;
         }
-        return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, reader->line,
-                           "line %d: a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text",
-                           reader->line);
+        gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line,
+                    "a zero byte; this is a binary file or UTF-16, not an OBJ or OFF text");
+        return reader->code;
     }
     /* 2. Polygons, after the byte order mark if there is one. */
     if (reader->size >= 3 && !memcmp(reader->text, "\xef\xbb\xbf", 3)) reader->at = 3;
@@ -13820,8 +13777,12 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
         format =
             gproji_next_word_anywhere(&look) && gproji_is_off_word(&look, &plain) ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
     }
-    code = format == GPROJ_FORMAT_OFF ? gproji_read_off(reader) : gproji_read_obj(reader);
-    if (code) return code;
+    gproji_push(reader, &reader->polyline_start, 0);
+    if (format == GPROJ_FORMAT_OFF)
+        gproji_read_off(reader);
+    else
+        gproji_read_obj(reader);
+    if (reader->code) return reader->code;
     if (!reader->vertex_count) {
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
@@ -13830,6 +13791,8 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
     soup.face_degree = reader->face_degree.data, soup.face_vertex = reader->face_vertex.data;
+    soup.polyline_count = (int32_t)reader->polyline_line.count;
+    soup.polyline_start = reader->polyline_start.data, soup.polyline_vertex = reader->polyline_vertex.data;
     code = gproji_mesh_build(object, &soup, error);
     if (code && error && (error->place == GPROJ_PLACE_VERTEX || error->place == GPROJ_PLACE_FACE)) {
         const gproji_ints *lines = error->place == GPROJ_PLACE_VERTEX ? &reader->vertex_line : &reader->face_line;
@@ -13837,9 +13800,7 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
         gproji_format(message, sizeof message, "line %d: %s", lines->data[error->index], error->message);
         memcpy(error->message, message, sizeof message);
     }
-    if (code) return code;
-    return gproji_mesh_set_polylines(object, (int32_t)reader->polyline_line.count, reader->polyline_start.data,
-                                     reader->polyline_vertex.data, error);
+    return code;
 }
 
 /* Reads a text into an object that has no mesh yet, and takes all work memory from it. */
@@ -13877,8 +13838,7 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
     gproji_mesh_object *object;
     gproji_error_clear(error);
     if ((!text && size) || format < GPROJ_FORMAT_DETECT || format > GPROJ_FORMAT_OFF) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    text ? "unknown text format" : "the text is NULL");
+        gproji_refuse(error, text ? "unknown text format" : "the text is NULL");
         return NULL;
     }
     object = gproji_mesh_begin(host, error);
@@ -14059,11 +14019,7 @@ GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const ch
 
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object;
-    gproji_error_clear(error);
-    if (!path) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the path to load from is NULL");
-        return NULL;
-    }
+    if (!gproji_given(path, "path to load from", error)) return NULL;
     object = gproji_mesh_begin(host, error);
     return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
 }
@@ -14075,12 +14031,11 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !path) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the %s to save is NULL",
-                           mesh ? "path" : "mesh");
+        return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
     }
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "'%s' says no format; let the name end with .obj or .off", gproji_quote_path(path, quote));
+        return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
+                             gproji_quote_path(path, quote));
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
@@ -14213,25 +14168,23 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* A stencil that is made row by row; gproji_rows_end reports missing memory. */
 typedef struct gproji_rows {
-    gproji_heap *heap; /* gives `place` */
+    gproji_heap heap; /* gives `place` */
     const gproj_host *host;
     gproj_stencil *stencil;
     bool failed; /* no memory: nothing more is added */
     int32_t column_count;
     int32_t row;    /* the one that is being made */
     int64_t count;  /* all entries so far */
-    int64_t *place; /* column_count: the column's entry in this row; older than the row, or -1: none yet */
+    int64_t *place; /* column_count: the column's entry in this row, plus 1; not beyond the row's start: none yet */
 } gproji_rows;
 
-GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count, gproji_heap *heap,
+GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count,
                                        const gproj_host *host) {
-    int32_t j;
-    rows->heap = heap, rows->host = host;
+    rows->heap = gproji_heap_of(host), rows->host = host;
     rows->column_count = column_count, rows->row = 0, rows->count = 0;
-    rows->place = (int64_t *)gproji_take(heap, (size_t)column_count, sizeof *rows->place);
+    rows->place = (int64_t *)gproji_take_zeroed(&rows->heap, (size_t)column_count, sizeof *rows->place);
     rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
     rows->failed = !rows->place || !rows->stencil;
-    for (j = 0; !rows->failed && j < column_count; ++j) rows->place[j] = -1;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
@@ -14239,14 +14192,14 @@ GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double w
     gproji_stencil_object *object;
     if (rows->failed) return;
     object = gproji_stencil_owner(rows->stencil);
-    if (rows->place[column] < object->start[rows->row]) {
+    if (rows->place[column] <= object->start[rows->row]) {
         rows->failed = !gproji_stencil_reserve(object, (size_t)rows->count + 1);
         if (rows->failed) return;
         object->column[rows->count] = column;
         object->weight[rows->count] = 0;
-        rows->place[column] = rows->count++;
+        rows->place[column] = ++rows->count;
     }
-    object->weight[rows->place[column]] += weight;
+    object->weight[rows->place[column] - 1] += weight;
 }
 
 GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
@@ -14257,7 +14210,7 @@ GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
 /* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
-    gproji_give(rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    gproji_give(&rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
     /* transposing twice sorts the columns in all rows, in linear time */
     if (!rows->failed) turned = gproji_transposed(rows->stencil, rows->host);
     gproj_stencil_destroy(rows->stencil);
@@ -14269,14 +14222,19 @@ GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *e
 
 /* -- rules -- */
 
-/* A mesh to be refined, and the data that the rules need besides. */
-typedef struct gproji_level {
-    const gproj_mesh *mesh;
+/* A level of a subdivision, and the way to the next one. Meshes and stencils have their own memory. */
+typedef struct gproji_subdivision {
+    gproji_heap heap; /* gives sharpness and corner */
+    const gproj_host *host;
+    gproj_error *error;
     gproj_scheme scheme;
-    double *sharpness;    /* edge_count: > 1 at the boundary */
-    const bool *corner;   /* corner_count: vertices that stay */
-    int32_t corner_count; /* vertices on the first level; later ones are no corners */
-} gproji_level;
+    const gproj_mesh *mesh; /* to be refined */
+    gproj_mesh *own;        /* the same, unless it is the caller's */
+    double *sharpness;      /* edge_count: > 1 at the boundary */
+    bool *corner;           /* corner_count: vertices that stay */
+    int32_t corner_count;   /* vertices on the first level; later ones are no corners */
+    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
+} gproji_subdivision;
 
 /* Adds `share` times the mean of a face's corners. */
 GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
@@ -14286,7 +14244,7 @@ GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, 
 }
 
 /* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
-GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_level *level, int32_t vertex, double least, double share,
+GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int32_t vertex, double least, double share,
                                             gproji_rows *rows) {
     const gproj_mesh *mesh = level->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
@@ -14350,14 +14308,13 @@ GPROJI_INTERNAL gproji_counts gproji_count_levels(const gproj_mesh *mesh, gproj_
 }
 
 /* Creates the stencil from a level to the next, with rows in the order vertices, edges, faces. */
-GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, gproji_heap *heap,
-                                                    const gproj_host *host, gproj_error *error) {
+GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(gproji_subdivision *level) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     gproji_rows rows;
     int32_t i, h;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, heap, host);
+    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, level->host);
     /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
        mean sharpness over edges that are sharp now and smooth then. */
     for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
@@ -14392,35 +14349,29 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(const gproji_level *level, g
     /* 3. Faces. */
     for (i = 0; !rows.failed && !loop && i < mesh->face_count; ++i, gproji_rows_next(&rows))
         gproji_add_face_rule(mesh, i, 1, &rows);
-    return gproji_rows_end(&rows, error);
+    return gproji_rows_end(&rows, level->error);
 }
 
 /* Builds the next level's mesh. */
-GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const gproj_stencil *stencil,
-                                              gproji_heap *heap, const gproj_host *host, gproj_error *error) {
+GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const gproj_stencil *stencil) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
-    int32_t p, i, f, h, k, c = 0, d = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
+    int32_t p, i, f, h, k, c = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_mesh_object *object;
-    gproji_soup soup;
+    gproji_mesh_object *object = gproji_mesh_begin(level->host, level->error);
+    gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
-    double *position;
-    int32_t *degree, *corner, *start, *vertex;
-    gproji_pool_start(&pool, heap);
-    position = (double *)gproji_pool_take(&pool, next.vertices, 3 * sizeof(double));
-    degree = (int32_t *)gproji_pool_take(&pool, next.faces, sizeof(int32_t));
-    corner = (int32_t *)gproji_pool_take(&pool, next.corners, sizeof(int32_t));
-    start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    vertex = (int32_t *)gproji_pool_take(&pool, next.polyline_vertices, sizeof(int32_t));
-    object = position && degree && corner && start && vertex ? gproji_mesh_begin(host, error) : NULL;
-    if (!object) {
+    int32_t *corner, *vertex;
+    if (!object) return NULL;
+    gproji_pool_start(&pool, &level->heap);
+    if (!gproji_draft_take(&draft, &pool, next.vertices, next.faces, next.corners, mesh->polyline_count,
+                           next.polyline_vertices)) {
         gproji_pool_give_all(&pool);
-        gproji_fail_memory(error);
-        return NULL;
+        return gproji_mesh_done(object, gproji_fail_memory(level->error));
     }
-    gproj_stencil_apply(stencil, 3, mesh->position, position);
+    corner = draft.corner, vertex = draft.vertex;
+    gproj_stencil_apply(stencil, 3, mesh->position, draft.position);
     /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
     for (f = 0; f < mesh->face_count; ++f) {
         h = mesh->face_halfedge[f];
@@ -14429,27 +14380,24 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
             corner[c++] = edges + h / 2;
             if (!loop) corner[c++] = faces + f;
             corner[c++] = edges + mesh->prev[h] / 2;
-            degree[d++] = loop ? 3 : 4;
+            draft.degree[draft.soup.face_count++] = loop ? 3 : 4;
         }
         if (!loop) continue;
         for (k = 0; k < 3; ++k, h = mesh->next[h]) corner[c++] = edges + h / 2;
-        degree[d++] = 3;
+        draft.degree[draft.soup.face_count++] = 3;
     }
     /* 2. Polylines: a vertex more between two that have an edge. */
     for (p = 0; p < mesh->polyline_count; ++p) {
-        start[p] = count;
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
             bool last = i + 1 == mesh->polyline_start[p + 1];
             vertex[count++] = mesh->polyline_vertex[i];
             h = last ? -1 : gproji_halfedge_between(mesh, mesh->polyline_vertex[i], mesh->polyline_vertex[i + 1]);
             if (h >= 0) vertex[count++] = edges + h / 2;
         }
+        draft.start[p + 1] = count;
     }
-    start[p] = count;
-    soup.vertex_count = (int32_t)next.vertices, soup.face_count = (int32_t)next.faces, soup.corner_count = 0;
-    soup.position = position, soup.face_degree = degree, soup.face_vertex = corner;
-    code = gproji_mesh_build(object, &soup, error);
-    if (!code) code = gproji_mesh_set_polylines(object, mesh->polyline_count, start, vertex, error);
+    draft.soup.vertex_count = (int32_t)next.vertices, draft.soup.polyline_count = mesh->polyline_count;
+    code = gproji_mesh_build(object, &draft.soup, level->error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(object, code);
 }
@@ -14459,11 +14407,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(const gproji_level *level, const g
 GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, const gproj_host *host,
                                                  gproj_error *error) {
     gproj_stencil *transposed;
-    gproji_error_clear(error);
-    if (!stencil) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the stencil to transpose is NULL");
-        return NULL;
-    }
+    if (!gproji_given(stencil, "stencil to transpose", error)) return NULL;
     transposed = gproji_transposed(stencil, host);
     if (!transposed) gproji_fail_memory(error);
     return transposed;
@@ -14471,22 +14415,21 @@ GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, c
 
 GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
                                                 const gproj_host *host, gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
     gproji_rows rows;
     int64_t k, l;
     int32_t i;
     gproji_error_clear(error);
     if (!fine || !coarse) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a stencil to multiply is NULL");
+        gproji_refuse(error, "a stencil to multiply is NULL");
         return NULL;
     }
     if (fine->column_count != coarse->row_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
-                    fine->column_count, coarse->row_count);
+        gproji_refuse(
+            error, "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
+            fine->column_count, coarse->row_count);
         return NULL;
     }
-    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, &heap, host);
+    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, host);
     for (i = 0; !rows.failed && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
             int32_t middle = fine->column[k];
@@ -14513,8 +14456,8 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
                                                 gproj_error *error) {
     int32_t k;
     if (options->crease_count < 0 || options->corner_count < 0) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: %d creases and %d corners",
-                           options->crease_count, options->corner_count);
+        return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
+                             options->corner_count);
     }
     for (k = 0; k < options->crease_count; ++k) {
         int32_t e = options->creases ? options->creases[k] : k;
@@ -14545,18 +14488,15 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     int32_t level, f;
     gproj_code code;
     if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "subdivide: there is no scheme %d",
-                           (int32_t)options->scheme);
+        return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
     }
     if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
-                           (int32_t)GPROJI_LEVELS_MAX);
+        return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                             (int32_t)GPROJI_LEVELS_MAX);
     }
     if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "subdivide: a stencil from level %d to level %d; take 0 to %d", options->stencil_level,
-                           options->levels, options->levels - 1);
+        return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
+                             options->stencil_level, options->levels, options->levels - 1);
     }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
@@ -14595,22 +14535,11 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
 
 /* -- all levels -- */
 
-/* The state between two levels. Meshes and stencils have their own memory. */
-typedef struct gproji_subdivision {
-    gproji_heap heap; /* gives level.sharpness and level.corner */
-    const gproj_host *host;
-    gproj_error *error;
-    gproji_level level;
-    gproj_mesh *own;        /* the level's mesh, unless it is the caller's */
-    gproj_stencil *stencil; /* from level stencil_level to this one; NULL: none is wanted, or not yet */
-} gproji_subdivision;
-
 /* Goes from a level to the next one. */
 GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool keep_stencil) {
-    gproji_level *level = &s->level;
-    const gproj_mesh *mesh = level->mesh;
-    gproj_stencil *step = gproji_level_stencil(level, &s->heap, s->host, s->error), *both;
-    gproj_mesh *fine = step ? gproji_level_mesh(level, step, &s->heap, s->host, s->error) : NULL;
+    const gproj_mesh *mesh = s->mesh;
+    gproj_stencil *step = gproji_level_stencil(s), *both;
+    gproj_mesh *fine = step ? gproji_level_mesh(s, step) : NULL;
     double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
     int32_t f, k, at = 0;
     if (!sharpness) {
@@ -14624,16 +14553,16 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
             int32_t half = fine->face_halfedge[at];
-            sharpness[half / 2] = gproji_fmax(level->sharpness[h / 2] - 1, 0);
-            sharpness[fine->prev[half] / 2] = gproji_fmax(level->sharpness[mesh->prev[h] / 2] - 1, 0);
+            sharpness[half / 2] = gproji_fmax(s->sharpness[h / 2] - 1, 0);
+            sharpness[fine->prev[half] / 2] = gproji_fmax(s->sharpness[mesh->prev[h] / 2] - 1, 0);
         }
-        if (level->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
+        if (s->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
     }
     /* 2. The fine mesh takes the coarse one's place. */
-    gproji_give(&s->heap, level->sharpness, (size_t)mesh->edge_count, sizeof(double));
+    gproji_give(&s->heap, s->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
-    level->sharpness = sharpness;
-    level->mesh = s->own = fine;
+    s->sharpness = sharpness;
+    s->mesh = s->own = fine;
     /* 3. The stencil from stencil_level to here. */
     if (keep_stencil && !s->stencil) {
         s->stencil = step;
@@ -14654,12 +14583,8 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     double *sharpness;
     bool *corner;
     int32_t level, k;
-    gproji_error_clear(error);
     if (stencil) *stencil = NULL;
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to subdivide is NULL");
-        return NULL;
-    }
+    if (!gproji_given(mesh, "mesh to subdivide", error)) return NULL;
     memset(&given, 0, sizeof given);
     if (options) given = *options;
     if (given.levels == 0) given.levels = 1;
@@ -14667,9 +14592,9 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     memset(&s, 0, sizeof s);
     s.heap = gproji_heap_of(host);
     s.host = host, s.error = error;
-    s.level.mesh = mesh, s.level.scheme = given.scheme, s.level.corner_count = mesh->vertex_count;
-    s.level.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
-    s.level.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
+    s.mesh = mesh, s.scheme = given.scheme, s.corner_count = mesh->vertex_count;
+    s.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
+    s.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
     if (!sharpness || !corner) code = gproji_fail_memory(error);
     /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
     for (k = 0; !code && k < mesh->edge_count; ++k)
@@ -14685,7 +14610,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
     gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
-    gproji_give(&s.heap, s.level.sharpness, (size_t)s.level.mesh->edge_count, sizeof(double));
+    gproji_give(&s.heap, s.sharpness, (size_t)s.mesh->edge_count, sizeof(double));
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
@@ -14816,30 +14741,22 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
     }
 }
 
-GPROJI_INTERNAL void gproji_hierarchy_give(gproji_heap *heap, gproji_hierarchy *tree) {
-    gproji_give(heap, tree->item, (size_t)tree->item_count, sizeof(int32_t));
-    gproji_give(heap, tree->node, (size_t)tree->item_count, sizeof(gproji_node));
-    tree->item = NULL, tree->node = NULL;
-}
-
-/* Builds the tree over `count` >= 1 items; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy *tree, int32_t count,
+/* Builds the tree over `count` >= 1 items; `keep` holds the arrays. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy *tree, int32_t count,
                                             gproji_item_box item_box, const void *user) {
     gproji_hierarchy_work work;
     gproji_pool pool;
     int32_t i, axis;
     bool complete;
-    memset(tree, 0, sizeof *tree);
-    tree->item_count = count;
-    tree->item = (int32_t *)gproji_take(heap, (size_t)count, sizeof(int32_t));
-    tree->node = (gproji_node *)gproji_take(heap, (size_t)count, sizeof(gproji_node));
-    gproji_pool_start(&pool, heap);
+    tree->item_count = count, tree->node_count = 0;
+    tree->item = (int32_t *)gproji_pool_take(keep, count, sizeof(int32_t));
+    tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
+    gproji_pool_start(&pool, keep->heap);
     work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
     work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
     work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
     for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
-    complete = tree->item && tree->node && work.box && work.spare && work.left && work.order[0] && work.order[1] &&
-               work.order[2];
+    complete = !keep->failed && !pool.failed;
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
         for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
@@ -14848,7 +14765,6 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_heap *heap, gproji_hierarchy 
         memcpy(tree->item, work.order[0], (size_t)count * sizeof(int32_t));
     }
     gproji_pool_give_all(&pool);
-    if (!complete) gproji_hierarchy_give(heap, tree);
     return complete;
 }
 
@@ -14912,6 +14828,7 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
    tangent is a unit vector: a segment without length has the tangent of the segment before it. */
 struct gproj_curve {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     int32_t segment_count;
     double *point;         /* 3 * (segment_count + 1) */
     double *tangent;       /* 3 * segment_count */
@@ -14960,40 +14877,37 @@ GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, c
 
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     if (!curve) return;
-    gproji_hierarchy_give(&curve->heap, &curve->tree);
-    gproji_give(&curve->heap, curve->tangent, (size_t)curve->segment_count, 3 * sizeof(double));
-    gproji_give(&curve->heap, curve->point, (size_t)curve->segment_count + 1, 3 * sizeof(double));
+    gproji_pool_give_all(&curve->pool);
     gproji_destroy_object(curve, sizeof *curve);
 }
 
 /* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
-    gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve));
-    if (curve) {
-        curve->segment_count = segment_count;
-        curve->point = (double *)gproji_take(&curve->heap, (size_t)segment_count + 1, 3 * sizeof(double));
-        curve->tangent = (double *)gproji_take(&curve->heap, (size_t)segment_count, 3 * sizeof(double));
-        if (curve->point && curve->tangent) return curve;
-        gproj_curve_destroy(curve);
-    }
+    gproj_curve *curve = (gproj_curve *)gproji_begin_object(host, sizeof(gproj_curve), error);
+    if (!curve) return NULL;
+    gproji_pool_start(&curve->pool, &curve->heap);
+    curve->segment_count = segment_count;
+    curve->point = (double *)gproji_pool_take(&curve->pool, (int64_t)segment_count + 1, 3 * sizeof(double));
+    curve->tangent = (double *)gproji_pool_take(&curve->pool, segment_count, 3 * sizeof(double));
+    if (!curve->pool.failed) return curve;
     gproji_fail_memory(error);
+    gproj_curve_destroy(curve);
     return NULL;
 }
 
-/* Checks the points and builds the rest; on failure destroys the curve and returns NULL. */
-GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
+/* Checks the points, and finds the tangents and the hierarchy. */
+GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, gproj_error *error) {
     const double zero[3] = {0, 0, 0};
-    double extent = 0, last[3] = {0, 0, 0}, *t;
+    const double *x = curve->point, *last;
+    double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    gproj_code code = gproji_check_positions(count + 1, curve->point, "point", error);
+    gproj_code code = gproji_check_positions(count + 1, x, "point", error);
+    if (code) return code;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
-    for (s = 0; s <= count && !code; ++s) {
-        for (k = 0; k < 3; ++k)
-            extent = gproji_fmax(extent, fabs(curve->point[3 * (size_t)s + (size_t)k] - curve->point[k]));
-    }
-    for (s = 0; s < count && !code; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        gproji_sub3(curve->point + 3 * (size_t)s + 3, curve->point + 3 * (size_t)s, t);
+    for (s = 0; s <= count; ++s)
+        for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
+    for (s = 0; s < count; ++s, t += 3, x += 3) {
+        gproji_sub3(x + 3, x, t);
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
         else
@@ -15001,24 +14915,22 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
-    if (!code && from < 0) {
-        code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+    if (from < 0)
+        return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "all %d points of the curve are the same; it needs two different ones",
                            count + (closed ? 0 : 1));
-    }
     /* 2. Zeros take over the direction before them. */
-    if (!code) gproji_copy3(curve->tangent + 3 * (size_t)from, last);
-    for (s = 0; s < count && !code; ++s) {
-        t = curve->tangent + 3 * (size_t)s;
-        if (gproji_dot3(t, t) > 0)
-            gproji_copy3(t, last);
-        else
-            gproji_copy3(last, t);
-    }
-    if (!code && !gproji_hierarchy_build(&curve->heap, &curve->tree, count, gproji_segment_box, curve)) {
-        code = gproji_fail_memory(error);
-    }
-    if (!code) return curve;
+    last = curve->tangent + 3 * (size_t)from;
+    for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
+        if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
+    return gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)
+               ? GPROJ_OK
+               : gproji_fail_memory(error);
+}
+
+/* Ends every function that makes a curve: returns it, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
+    if (!gproji_curve_build(curve, closed, error)) return curve;
     gproj_curve_destroy(curve);
     return NULL;
 }
@@ -15028,8 +14940,8 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
     gproj_curve *curve;
     gproji_error_clear(error);
     if (count < 2 || count > GPROJI_VERTICES_MAX || !points) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL", count);
+        gproji_refuse(error, points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL",
+                      count);
         return NULL;
     }
     curve = gproji_curve_begin(closed ? count : count - 1, host, error);
@@ -15042,20 +14954,14 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
 GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
                                              gproj_error *error) {
     gproj_curve *curve;
-    int32_t start, h, count = 0;
-    gproji_error_clear(error);
-    if (!mesh || loop < 0 || loop >= mesh->loop_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "boundary loop %d of a mesh that has %d of them" : "the mesh of the boundary loop is NULL",
-                    loop, mesh ? mesh->loop_count : 0);
+    int32_t start, h, count;
+    if (!gproji_given(mesh, "mesh of the boundary loop", error)) return NULL;
+    if (loop < 0 || loop >= mesh->loop_count) {
+        gproji_refuse(error, "boundary loop %d of a mesh that has %d of them", loop, mesh->loop_count);
         return NULL;
     }
     start = mesh->loop_halfedge[loop];
-    h = start;
-    do {
-        ++count;
-        h = mesh->prev[h];
-    } while (h != start);
+    for (count = 1, h = mesh->prev[start]; h != start; h = mesh->prev[h]) ++count;
     curve = gproji_curve_begin(count, host, error);
     if (!curve) return NULL;
     /* with the faces' edges, that is against the boundary half-edges */
@@ -15069,11 +14975,9 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     gproj_curve *curve;
     const int32_t *vertex;
     int32_t segments, i;
-    gproji_error_clear(error);
-    if (!mesh || polyline < 0 || polyline >= mesh->polyline_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "polyline %d of a mesh that has %d of them" : "the mesh of the polyline is NULL", polyline,
-                    mesh ? mesh->polyline_count : 0);
+    if (!gproji_given(mesh, "mesh of the polyline", error)) return NULL;
+    if (polyline < 0 || polyline >= mesh->polyline_count) {
+        gproji_refuse(error, "polyline %d of a mesh that has %d of them", polyline, mesh->polyline_count);
         return NULL;
     }
     vertex = mesh->polyline_vertex + mesh->polyline_start[polyline];
@@ -15111,6 +15015,7 @@ GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const do
    Invariant: the triangles of a face stand together, in the order of the faces. */
 struct gproj_surface {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     int32_t vertex_count, triangle_count;
     double *position;       /* 3 * vertex_count */
     double *normal;         /* 3 * vertex_count: unit, or 0 if no face gives one */
@@ -15123,14 +15028,25 @@ struct gproj_surface {
 
 /* Work on one face: the corners in a plane, as a ring from which ears are cut. */
 typedef struct gproji_polygon {
-    double *xy;       /* 2 * capacity: corners relative to the first, in the plane orthogonal to the vectorial area */
-    int32_t *vertex;  /* capacity: vertices in the mesh */
-    int32_t *next;    /* capacity: the ring of corners that are left */
-    int32_t *prev;    /* capacity */
-    int32_t capacity; /* the largest degree of a face */
+    double *xy;      /* 2 a corner: relative to the first, in the plane orthogonal to the vectorial area */
+    int32_t *vertex; /* 1 a corner: vertices in the mesh */
+    int32_t *next;   /* 1 a corner: the ring of corners that are left */
+    int32_t *prev;
+    int32_t *ear; /* 3 a corner: the ears cut so far, each with the corners before and after it */
+    int32_t ears;
     int32_t count;
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
+
+/* Takes the arrays for faces up to a degree; false without memory. */
+GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *pool, int32_t degree) {
+    polygon->xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
+    polygon->vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->ear = (int32_t *)gproji_pool_take(pool, degree, 3 * sizeof(int32_t));
+    return !pool->failed;
+}
 
 /* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
 GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
@@ -15147,7 +15063,7 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     gproji_normalise3(n, up);
     gproji_tangents3(n, u, v);
     first = mesh->position + 3 * (size_t)mesh->origin[h];
-    polygon->count = mesh->face_degree[face];
+    polygon->count = mesh->face_degree[face], polygon->ears = 0;
     for (i = 0; i < polygon->count; ++i, h = mesh->next[h]) {
         gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[h], first, d);
         polygon->xy[2 * (size_t)i] = gproji_dot3(d, u);
@@ -15177,6 +15093,30 @@ GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int
     return true;
 }
 
+/* Cuts ears, from corner b on, until `least` corners are left; returns one of them, or -1 if all ways to go on need a
+   diagonal that `mesh` has as an edge already (NULL: that does no harm). If no corner is an ear (the face crosses
+   itself), or 512 looks a corner are used up (so that time is linear in the mesh), any is cut off. */
+GPROJI_INTERNAL int32_t gproji_cut_ears(gproji_polygon *polygon, int32_t b, int32_t least, const gproj_mesh *mesh) {
+    int64_t budget = 512 * (int64_t)polygon->count;
+    int32_t left = polygon->count, refused = 0;
+    bool any = false;
+    while (left > least) {
+        int32_t a = polygon->prev[b], c = polygon->next[b], *ear = polygon->ear + 3 * (size_t)polygon->ears;
+        any = any || refused >= left || budget <= 0;
+        if (refused >= 2 * left) return -1;
+        if ((mesh && gproji_halfedge_between(mesh, polygon->vertex[a], polygon->vertex[c]) >= 0) ||
+            (!any && !gproji_is_ear(polygon, b, &budget))) {
+            ++refused, b = c;
+            continue;
+        }
+        ear[0] = a, ear[1] = b, ear[2] = c;
+        polygon->next[a] = c, polygon->prev[c] = a;
+        ++polygon->ears, --left, refused = 0, any = false;
+        b = c;
+    }
+    return b;
+}
+
 /* Appends the triangle a b c of corners. */
 GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *polygon, int32_t face, int32_t a, int32_t b,
                               int32_t c) {
@@ -15189,8 +15129,7 @@ GPROJI_INLINE void gproji_cut(gproj_surface *surface, const gproji_polygon *poly
 GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *polygon, const gproj_mesh *mesh,
                                      int32_t face) {
     double least;
-    int64_t budget;
-    int32_t i, left, b = 1, refused = 0;
+    int32_t i, left, b;
     bool convex = true;
     gproji_polygon_set(polygon, mesh, face);
     /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
@@ -15201,20 +15140,11 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     }
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;
-    /* 2. Others: cut ears until three corners are left. If none is an ear (the face crosses itself), or 512 looks a
-       corner are used up (so that time is linear in the mesh), a corner is cut off all the same. */
-    budget = 512 * (int64_t)polygon->count;
-    while (left > 3) {
-        int32_t a = polygon->prev[b], c = polygon->next[b];
-        if (refused < left && budget > 0 && !gproji_is_ear(polygon, b, &budget)) {
-            ++refused;
-            b = c;
-            continue;
-        }
-        gproji_cut(surface, polygon, face, a, b, c);
-        polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0;
-        b = c;
+    /* 2. Others: ears until three corners are left. */
+    b = gproji_cut_ears(polygon, 1, 3, NULL);
+    for (i = 0; i < polygon->ears; ++i) {
+        const int32_t *ear = polygon->ear + 3 * (size_t)i;
+        gproji_cut(surface, polygon, face, ear[0], ear[1], ear[2]);
     }
     gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
 }
@@ -15291,14 +15221,8 @@ GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, 
 /* -- the object -- */
 
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
-    size_t vertices, triangles;
     if (!surface) return;
-    vertices = (size_t)surface->vertex_count, triangles = (size_t)surface->triangle_count;
-    gproji_hierarchy_give(&surface->heap, &surface->tree);
-    gproji_give(&surface->heap, surface->triangle_face, triangles, sizeof(int32_t));
-    gproji_give(&surface->heap, surface->triangle, triangles, 3 * sizeof(int32_t));
-    gproji_give(&surface->heap, surface->normal, vertices, 3 * sizeof(double));
-    gproji_give(&surface->heap, surface->position, vertices, 3 * sizeof(double));
+    gproji_pool_give_all(&surface->pool);
     gproji_destroy_object(surface, sizeof *surface);
 }
 
@@ -15307,7 +15231,6 @@ GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_
     const double zero[3] = {0, 0, 0};
     double n[3], a[3], b[3], cross[3];
     int32_t f, h, v;
-    memset(surface->normal, 0, (size_t)surface->vertex_count * 3 * sizeof(double));
     for (f = 0; f < mesh->face_count; ++f) {
         gproj_mesh_face_area_vector(mesh, f, n);
         if (!gproji_normalise3(n, zero)) continue;
@@ -15329,46 +15252,31 @@ GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproj_surface *surface;
     gproji_polygon polygon;
-    gproji_pool pool;
-    int32_t f, vertices, triangles = 0;
+    gproji_pool pool, *keep;
+    int32_t f, triangles = 0, degree = 0;
     bool complete;
-    gproji_error_clear(error);
-    if (!mesh || !mesh->face_count) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    mesh ? "the mesh of the surface has no faces" : "the mesh of the surface is NULL");
-        return NULL;
-    }
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
-    surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface));
-    if (!surface) {
-        gproji_fail_memory(error);
-        return NULL;
-    }
-    memset(&polygon, 0, sizeof polygon);
+    if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
+    if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
+    if (!mesh->face_count || gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    surface = (gproj_surface *)gproji_begin_object(host, sizeof(gproj_surface), error);
+    if (!surface) return NULL;
+    keep = &surface->pool;
+    gproji_pool_start(keep, &surface->heap);
+    gproji_pool_start(&pool, &surface->heap);
     for (f = 0; f < mesh->face_count; ++f) {
         triangles += mesh->face_degree[f] - 2;
-        polygon.capacity = gproji_max(polygon.capacity, mesh->face_degree[f]);
+        degree = gproji_max(degree, mesh->face_degree[f]);
     }
-    surface->vertex_count = vertices = mesh->vertex_count, surface->triangle_count = triangles;
-    surface->position = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
-    surface->normal = (double *)gproji_take(&surface->heap, (size_t)vertices, 3 * sizeof(double));
-    surface->triangle = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_take(&surface->heap, (size_t)triangles, sizeof(int32_t));
-    gproji_pool_start(&pool, &surface->heap);
-    polygon.xy = (double *)gproji_pool_take(&pool, polygon.capacity, 2 * sizeof(double));
-    polygon.vertex = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    polygon.next = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    polygon.prev = (int32_t *)gproji_pool_take(&pool, polygon.capacity, sizeof(int32_t));
-    complete = surface->position && surface->normal && surface->triangle && surface->triangle_face && polygon.xy &&
-               polygon.vertex && polygon.next && polygon.prev;
-    if (complete) {
-        memcpy(surface->position, mesh->position, (size_t)vertices * 3 * sizeof(double));
-        gproji_surface_normals(surface, mesh);
-        surface->triangle_count = 0; /* counted up again by cutting */
-        for (f = 0; f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
-    }
+    surface->vertex_count = mesh->vertex_count;
+    surface->position = (double *)gproji_pool_copy(keep, mesh->position, mesh->vertex_count, 3 * sizeof(double));
+    surface->normal = (double *)gproji_pool_take_zeroed(keep, mesh->vertex_count, 3 * sizeof(double));
+    surface->triangle = (int32_t *)gproji_pool_take(keep, triangles, 3 * sizeof(int32_t));
+    surface->triangle_face = (int32_t *)gproji_pool_take(keep, triangles, sizeof(int32_t));
+    complete = gproji_polygon_take(&polygon, &pool, degree) && !keep->failed;
+    if (complete) gproji_surface_normals(surface, mesh);
+    for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
-    if (complete && gproji_hierarchy_build(&surface->heap, &surface->tree, triangles, gproji_triangle_box, surface)) {
+    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface)) {
         return surface;
     }
     gproji_fail_memory(error);
@@ -15415,26 +15323,35 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
    lead to lower numbers. A removed edge has origin -1 at both half-edges, a removed face the half-edge -1. */
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
-    GPROJI_EDIT_HALFEDGE,
     GPROJI_EDIT_EDGE,
-    GPROJI_EDIT_FACE,
+    GPROJI_EDIT_FACE, /* these three are numbered */
+    GPROJI_EDIT_HALFEDGE,
+    GPROJI_EDIT_POSITION,
+    GPROJI_EDIT_POLYLINE_START,
+    GPROJI_EDIT_POLYLINE_VERTEX,
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
+enum {
+    GPROJI_EDIT_NUMBERED = GPROJI_EDIT_FACE + 1
+};
 
-/* Integers in each element: every one is an array below. */
-static const int32_t gproji_edit_rows[GPROJI_EDIT_KINDS] = {4, 4, 1, 4};
+/* Arrays of each kind, one after the other in a block, and the size of their elements. */
+static const struct {
+    size_t rows, size;
+} gproji_edit_block[GPROJI_EDIT_KINDS] = {{4, sizeof(int32_t)}, {1, sizeof(int32_t)},    {4, sizeof(int32_t)},
+                                          {4, sizeof(int32_t)}, {1, 3 * sizeof(double)}, {1, sizeof(int32_t)},
+                                          {1, sizeof(int32_t)}};
 
 /* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
-    int32_t *block[GPROJI_EDIT_KINDS]; /* rows * room integers: the arrays below, one after the other */
-    double *position;                  /* 3 * room for vertices */
+    void *block[GPROJI_EDIT_KINDS]; /* rows * room elements: the arrays below */
     int32_t polyline_count;
-    int32_t polyline_room;
-    int32_t *polyline_start;  /* polyline_count + 1 */
-    int32_t *polyline_vertex; /* polyline_room: merged vertices already stand for those they were merged into */
 
+    double *position;
+    int32_t *polyline_start;  /* polyline_count + 1 */
+    int32_t *polyline_vertex; /* merged vertices already stand for those they were merged into */
     int32_t *vertex_halfedge;
     int32_t *vertex_into; /* itself, or the vertex it was merged into */
     int32_t *vertex_mark; /* the last stamp that met it */
@@ -15451,8 +15368,8 @@ typedef struct gproji_edit_object {
     gproj_edit edit;
     gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
-    int32_t *number[GPROJI_EDIT_KINDS]; /* of vertices, edges, faces in the last mesh made; NULL for half-edges */
-    int32_t number_count[GPROJI_EDIT_KINDS];
+    int32_t *number[GPROJI_EDIT_NUMBERED]; /* of vertices, edges, faces in the last mesh made */
+    int32_t number_count[GPROJI_EDIT_NUMBERED];
     int32_t stamp;
 } gproji_edit_object;
 
@@ -15465,12 +15382,14 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
     gproj_mesh *view = &object->view;
     size_t vertices = (size_t)s->room[GPROJI_EDIT_VERTEX], halfedges = (size_t)s->room[GPROJI_EDIT_HALFEDGE],
            faces = (size_t)s->room[GPROJI_EDIT_FACE];
-    s->vertex_halfedge = s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
+    s->vertex_halfedge = (int32_t *)s->block[GPROJI_EDIT_VERTEX], s->vertex_into = s->vertex_halfedge + vertices;
     s->vertex_mark = s->vertex_into + vertices, s->on_polyline = s->vertex_mark + vertices;
-    s->next = s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
+    s->next = (int32_t *)s->block[GPROJI_EDIT_HALFEDGE], s->prev = s->next + halfedges;
     s->origin = s->prev + halfedges, s->face = s->origin + halfedges;
-    s->edge_into = s->block[GPROJI_EDIT_EDGE];
-    s->face_halfedge = s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
+    s->edge_into = (int32_t *)s->block[GPROJI_EDIT_EDGE], s->position = (double *)s->block[GPROJI_EDIT_POSITION];
+    s->polyline_start = (int32_t *)s->block[GPROJI_EDIT_POLYLINE_START];
+    s->polyline_vertex = (int32_t *)s->block[GPROJI_EDIT_POLYLINE_VERTEX];
+    s->face_halfedge = (int32_t *)s->block[GPROJI_EDIT_FACE], s->face_degree = s->face_halfedge + faces;
     s->face_parent = s->face_degree + faces, s->face_mark = s->face_parent + faces;
     edit->vertex_count = view->vertex_count = s->count[GPROJI_EDIT_VERTEX];
     edit->edge_count = view->edge_count = s->count[GPROJI_EDIT_EDGE];
@@ -15490,43 +15409,34 @@ GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
 GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
     int32_t kind;
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(heap, s->block[kind], (size_t)s->room[kind], (size_t)gproji_edit_rows[kind] * sizeof(int32_t));
-    gproji_give(heap, s->position, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    gproji_give(heap, s->polyline_start, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    gproji_give(heap, s->polyline_vertex, (size_t)s->polyline_room, sizeof(int32_t));
+        gproji_give(heap, s->block[kind], (size_t)s->room[kind],
+                    gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
 }
 
-/* Takes the blocks for a store's counts and rooms; after a failure those that were taken can be given back. */
+/* Takes the blocks for a store's rooms; after a failure those that were taken can be given back. */
 GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
     bool complete = true;
     int32_t kind;
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
-        s->block[kind] = (int32_t *)gproji_take_zeroed(heap, (size_t)s->room[kind], size);
+        size_t size = gproji_edit_block[kind].rows * gproji_edit_block[kind].size;
+        s->block[kind] = gproji_take_zeroed(heap, (size_t)s->room[kind], size);
         complete = complete && s->block[kind];
     }
-    s->position = (double *)gproji_take(heap, (size_t)s->room[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    s->polyline_start = (int32_t *)gproji_take(heap, (size_t)s->polyline_count + 1, sizeof(int32_t));
-    s->polyline_vertex = (int32_t *)gproji_take(heap, (size_t)s->polyline_room, sizeof(int32_t));
-    return complete && s->position && s->polyline_start && s->polyline_vertex;
+    return complete;
 }
 
 /* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
     const gproji_edit_store *s = &object->now;
+    bool complete;
     int32_t kind;
     *copy = *s;
-    if (!gproji_edit_take(&object->heap, copy)) {
-        gproji_edit_give(&object->heap, copy);
-        return false;
-    }
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+    complete = gproji_edit_take(&object->heap, copy);
+    for (kind = 0; complete && kind < GPROJI_EDIT_KINDS; ++kind)
         memcpy(copy->block[kind], s->block[kind],
-               (size_t)gproji_edit_rows[kind] * (size_t)s->room[kind] * sizeof(int32_t));
-    memcpy(copy->position, s->position, (size_t)s->count[GPROJI_EDIT_VERTEX] * 3 * sizeof(double));
-    memcpy(copy->polyline_start, s->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(copy->polyline_vertex, s->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
-    return true;
+               (size_t)s->room[kind] * gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (!complete) gproji_edit_give(&object->heap, copy);
+    return complete;
 }
 
 /* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
@@ -15537,36 +15447,33 @@ GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji
     return code;
 }
 
-/* Makes room for new elements, so that the operators cannot fail. */
+/* Makes room for new elements and polyline vertices, so that the operators cannot fail. */
 GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64_t vertices, int64_t edges,
-                                               int64_t faces, gproj_error *error) {
+                                               int64_t faces, int64_t polyline_vertices, gproj_error *error) {
     gproji_edit_store *s = &object->now;
-    int64_t more[GPROJI_EDIT_KINDS];
-    int32_t kind, r;
+    const int64_t more[GPROJI_EDIT_KINDS] = {vertices, edges, faces, 2 * edges, vertices, 0, polyline_vertices};
+    int32_t kind;
+    size_t r;
     if (s->count[GPROJI_EDIT_VERTEX] + vertices > GPROJI_VERTICES_MAX ||
         s->count[GPROJI_EDIT_EDGE] + edges > GPROJI_CORNERS_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    more[GPROJI_EDIT_VERTEX] = vertices, more[GPROJI_EDIT_HALFEDGE] = 2 * edges;
-    more[GPROJI_EDIT_EDGE] = edges, more[GPROJI_EDIT_FACE] = faces;
+    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > INT32_MAX / 2)
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room, *block;
-        size_t size = (size_t)gproji_edit_rows[kind] * sizeof(int32_t);
+        int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room;
+        size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
+        char *block;
         if (needed <= old) continue;
         room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old) : needed; /* doubles: n additions cost O(n) */
-        block = (int32_t *)gproji_take_zeroed(&object->heap, (size_t)room, size);
-        if (block && kind == GPROJI_EDIT_VERTEX) {
-            double *position =
-                (double *)gproji_retake(&object->heap, s->position, (size_t)old, (size_t)room, 3 * sizeof(double));
-            if (position) s->position = position;
-            if (!position) gproji_give(&object->heap, block, (size_t)room, size), block = NULL;
-        }
+        block = (char *)gproji_take_zeroed(&object->heap, (size_t)room, rows * size);
         if (!block) return gproji_fail_memory(error);
-        for (r = 0; r < gproji_edit_rows[kind]; ++r)
-            memcpy(block + (size_t)r * (size_t)room, s->block[kind] + (size_t)r * (size_t)old,
-                   (size_t)s->count[kind] * sizeof(int32_t));
-        gproji_give(&object->heap, s->block[kind], (size_t)old, size);
+        for (r = 0; r < rows; ++r)
+            memcpy(block + r * (size_t)room * size, (char *)s->block[kind] + r * (size_t)old * size,
+                   (size_t)s->count[kind] * size);
+        gproji_give(&object->heap, s->block[kind], (size_t)old, rows * size);
         s->block[kind] = block, s->room[kind] = room;
         gproji_edit_publish(object);
     }
@@ -15574,6 +15481,14 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
 }
 
 /* -- elements -- */
+
+/* Adds a vertex; the position is not set. */
+GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
+    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
+    s->count[GPROJI_EDIT_POSITION]++;
+    s->vertex_into[v] = v;
+    return v;
+}
 
 /* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
@@ -15634,11 +15549,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
 /* -- checks on arguments -- */
 
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
-    gproji_error_clear(error);
-    if (!edit) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the edit is NULL");
-        return NULL;
-    }
+    if (!gproji_given(edit, "edit", error)) return NULL;
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
@@ -15652,11 +15563,11 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
     return false;
 }
 
-/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. */
+/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. -1 without an object. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
     gproj_code code = GPROJ_OK;
     int32_t root;
-    if (!gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
     if (root < 0)
         code =
@@ -15703,31 +15614,13 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
     return count;
 }
 
-/* Makes room for `more` polyline vertices. */
-GPROJI_INTERNAL gproj_code gproji_polyline_reserve(gproji_edit_object *object, int64_t more, gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int64_t needed = s->polyline_start[s->polyline_count] + more;
-    int32_t *moved, room;
-    if (needed <= s->polyline_room) return GPROJ_OK;
-    if (needed > INT32_MAX / 2)
-        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
-    room = 2 * (int32_t)needed;
-    moved = (int32_t *)gproji_retake(&object->heap, s->polyline_vertex, (size_t)s->polyline_room, (size_t)room,
-                                     sizeof(int32_t));
-    if (!moved) return gproji_fail_memory(error);
-    s->polyline_vertex = moved, s->polyline_room = room;
-    return GPROJ_OK;
-}
-
 /* -- the three operators; there is room -- */
 
 /* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
     int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
-    s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
     s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
     s->face[onward] = s->face[h], s->face[back] = s->face[g];
@@ -15743,7 +15636,7 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
         for (i = s->polyline_start[p]; i + 1 < s->polyline_start[p + 1]; ++i) {
             int32_t *place = s->polyline_vertex + i + 1;
             if (!gproji_polyline_runs(s, i, a, b)) continue;
-            memmove(place + 1, place, (size_t)(s->polyline_start[s->polyline_count] - i - 1) * sizeof(int32_t));
+            memmove(place + 1, place, (size_t)(s->count[GPROJI_EDIT_POLYLINE_VERTEX]++ - i - 1) * sizeof(int32_t));
             *place = x;
             s->on_polyline[x] = 1;
             for (q = p + 1; q <= s->polyline_count; ++q) s->polyline_start[q]++;
@@ -15753,29 +15646,37 @@ GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h,
     return onward;
 }
 
-/* Cuts a face between the origins at two half-edges. Returns the half-edge from the first to the second origin: it is
-   in the part with `to`, the twin in the part with `from`. */
-GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+/* Cuts face `whole` between the origins at two half-edges. Returns the half-edge from the first to the second origin:
+   it is in the part with `to`, the twin in the part with `from`. With `ear` the latter is a triangle, and the
+   caller numbers the rest's half-edges after the last ear: this way n ears take O(n) steps. */
+GPROJI_INTERNAL int32_t gproji_edit_divide(gproji_edit_object *object, int32_t whole, int32_t from, int32_t to,
+                                           bool ear) {
     gproji_edit_store *s = &object->now;
-    int32_t whole = s->face[from], d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
-    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0;
+    int32_t d = 2 * gproji_edit_add_edge(s), o = d + 1, part = s->count[GPROJI_EDIT_FACE]++;
+    int32_t before_from = s->prev[from], before_to = s->prev[to], h, start, count = 0, label = part;
     bool first = false; /* is the whole's first corner in the part with `from`? */
     s->face_parent[part] = s->face_parent[whole];
     s->origin[d] = s->origin[from], s->origin[o] = s->origin[to];
     gproji_edit_insert(s, before_from, d, to);
     gproji_edit_insert(s, before_to, o, from);
     for (h = from; h != o; h = s->next[h]) first = first || h == s->face_halfedge[whole];
+    s->face_halfedge[part] = start = first ? d : o; /* the part without the first corner becomes the new face */
     s->face[d] = s->face[o] = whole;
-    start = h = first ? d : o; /* the part without the first corner becomes the new face */
+    if (ear && first) s->face[d] = part, start = o, label = whole; /* the triangle stays, and is numbered alone */
+    h = start;
     do {
-        s->face[h] = part;
+        s->face[h] = label;
         ++count;
         h = s->next[h];
     } while (h != start);
-    s->face_halfedge[part] = start, s->face_degree[part] = count;
-    s->face_degree[whole] += 2 - count;
+    s->face_degree[part] = label == part ? count : s->face_degree[whole] + 2 - count;
+    s->face_degree[whole] += 2 - s->face_degree[part];
     gproji_edit_publish(object);
     return d;
+}
+
+GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
+    return gproji_edit_divide(object, object->now.face[from], from, to, false);
 }
 
 /* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
@@ -15827,7 +15728,7 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
         if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
     if (!s->on_polyline[gone]) return kept;
     s->on_polyline[kept] = 1;
-    for (i = 0; i < s->polyline_start[s->polyline_count]; ++i)
+    for (i = 0; i < s->count[GPROJI_EDIT_POLYLINE_VERTEX]; ++i)
         if (s->polyline_vertex[i] == gone) s->polyline_vertex[i] = kept;
     return kept;
 }
@@ -15898,7 +15799,7 @@ GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     int32_t kind;
     if (!object) return;
     gproji_edit_give(&object->heap, &object->now);
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind)
         gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
     gproji_destroy_object(object, sizeof *object);
 }
@@ -15907,23 +15808,17 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     gproji_edit_object *object;
     gproji_edit_store *s;
     size_t vertices, halfedges, faces;
-    int32_t kind, i;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh to edit is NULL");
-        return NULL;
-    }
-    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object);
-    if (!object) {
-        gproji_fail_memory(error);
-        return NULL;
-    }
+    int32_t polylines, i;
+    if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
+    object = (gproji_edit_object *)gproji_begin_object(host, sizeof *object, error);
+    if (!object) return NULL;
     s = &object->now;
-    s->count[GPROJI_EDIT_VERTEX] = mesh->vertex_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
-    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_FACE] = mesh->face_count;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) s->room[kind] = s->count[kind];
-    s->polyline_count = mesh->polyline_count;
-    s->polyline_room = mesh->polyline_start[mesh->polyline_count];
+    s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
+    s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
+    s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
+    s->count[GPROJI_EDIT_FACE] = mesh->face_count, s->count[GPROJI_EDIT_POLYLINE_START] = s->polyline_count + 1;
+    s->count[GPROJI_EDIT_POLYLINE_VERTEX] = polylines;
+    memcpy(s->room, s->count, sizeof s->room);
     if (!gproji_edit_take(&object->heap, s)) {
         gproji_fail_memory(error);
         gproj_edit_destroy(&object->edit);
@@ -15940,11 +15835,11 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     memcpy(s->face_halfedge, mesh->face_halfedge, faces * sizeof(int32_t));
     memcpy(s->face_degree, mesh->face_degree, faces * sizeof(int32_t));
     memcpy(s->polyline_start, mesh->polyline_start, ((size_t)s->polyline_count + 1) * sizeof(int32_t));
-    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)s->polyline_room * sizeof(int32_t));
+    memcpy(s->polyline_vertex, mesh->polyline_vertex, (size_t)polylines * sizeof(int32_t));
     for (i = 0; i < mesh->vertex_count; ++i) s->vertex_into[i] = i;
     for (i = 0; i < mesh->edge_count; ++i) s->edge_into[i] = i;
     for (i = 0; i < mesh->face_count; ++i) s->face_parent[i] = i;
-    for (i = 0; i < s->polyline_room; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
+    for (i = 0; i < polylines; ++i) s->on_polyline[s->polyline_vertex[i]] = 1;
     return &object->edit;
 }
 
@@ -15954,59 +15849,46 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* The polygons and polylines for gproj_edit_mesh. */
-typedef struct gproji_edit_out {
-    int32_t *number[GPROJI_EDIT_KINDS]; /* stay with the edit if all goes well */
-    gproji_soup soup;
-    int32_t polyline_count, *start, *vertex;
-} gproji_edit_out;
-
 /* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
-GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_edit_out *out) {
+GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_draft *draft,
+                                       int32_t *number[GPROJI_EDIT_NUMBERED]) {
     const gproji_edit_store *s = &object->now;
-    gproji_soup *soup = &out->soup;
-    double *position;
-    int32_t *degree, *corner, *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
+    gproji_soup *soup = &draft->soup;
+    int32_t *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
     bool complete = true;
-    memset(out, 0, sizeof *out);
     /* 1. Room, as large as can be needed. */
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        if (kind == GPROJI_EDIT_HALFEDGE) continue;
-        out->number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        complete = complete && out->number[kind];
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
+        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        complete = complete && number[kind];
     }
-    position = (double *)gproji_pool_take(pool, s->count[GPROJI_EDIT_VERTEX], 3 * sizeof(double));
-    degree = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_FACE], sizeof(int32_t));
-    corner = (int32_t *)gproji_pool_take(pool, s->count[GPROJI_EDIT_HALFEDGE], sizeof(int32_t));
-    out->start = (int32_t *)gproji_pool_take(pool, (int64_t)s->polyline_count + 1, sizeof(int32_t));
-    out->vertex = (int32_t *)gproji_pool_take(pool, s->polyline_room, sizeof(int32_t));
-    if (!(complete && position && degree && corner && out->start && out->vertex)) return false;
+    if (!gproji_draft_take(draft, pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]) ||
+        !complete)
+        return false;
     /* 2. Vertices; a merged one gets the number that the lower one has already. */
-    vertex = out->number[GPROJI_EDIT_VERTEX], face = out->number[GPROJI_EDIT_FACE];
+    vertex = number[GPROJI_EDIT_VERTEX], face = number[GPROJI_EDIT_FACE];
     for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
         if (s->vertex_into[v] != v) continue;
-        memcpy(position + 3 * (size_t)soup->vertex_count++, s->position + 3 * (size_t)v, 3 * sizeof(double));
+        gproji_copy3(s->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count++);
     }
     /* 3. Faces. */
     for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         h = s->face_halfedge[f];
         face[f] = h < 0 ? -1 : soup->face_count;
         if (h < 0) continue;
-        degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) corner[corners++] = vertex[s->origin[h]];
+        draft->degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft->corner[corners++] = vertex[s->origin[h]];
     }
-    soup->position = position, soup->face_degree = degree, soup->face_vertex = corner;
     /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
-    out->start[0] = 0;
     for (p = 0; p < s->polyline_count; ++p) {
         begin = end;
         for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
             v = vertex[s->polyline_vertex[i]];
-            if (end == begin || out->vertex[end - 1] != v) out->vertex[end++] = v;
+            if (end == begin || draft->vertex[end - 1] != v) draft->vertex[end++] = v;
         }
         if (end < begin + 2) end = begin;
-        if (end > begin) out->start[++out->polyline_count] = end;
+        if (end > begin) draft->start[++soup->polyline_count] = end;
     }
     return true;
 }
@@ -16015,30 +15897,30 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
     gproji_mesh_object *made;
-    gproji_edit_out out;
+    gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
+    int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
     int32_t kind, f, e, h, k, i, *edge;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_write(object, &pool, &out) ? GPROJ_OK : gproji_fail_memory(error);
-    if (!code) code = gproji_mesh_build(made, &out.soup, error);
-    if (!code) code = gproji_mesh_set_polylines(made, out.polyline_count, out.start, out.vertex, error);
+    code = gproji_edit_write(object, &pool, &draft, number) ? gproji_mesh_build(made, &draft.soup, error)
+                                                            : gproji_fail_memory(error);
     /* The mesh has numbered the edges: both are walked side by side. */
-    edge = out.number[GPROJI_EDIT_EDGE];
+    edge = number[GPROJI_EDIT_EDGE];
     for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[out.number[GPROJI_EDIT_FACE][f]];
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[number[GPROJI_EDIT_FACE][f]];
         for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) { /* new numbers replace the old ones, or are given back */
-        int32_t *other = code ? out.number[kind] : object->number[kind];
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) { /* new numbers replace the old ones, or are given back */
+        int32_t *other = code ? number[kind] : object->number[kind];
         gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
-        if (!code) object->number[kind] = out.number[kind], object->number_count[kind] = s->count[kind];
+        if (!code) object->number[kind] = number[kind], object->number_count[kind] = s->count[kind];
     }
     gproji_edit_publish(object);
     gproji_pool_give_all(&pool);
@@ -16060,10 +15942,8 @@ GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t othe
 
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
-    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, error) ||
-        gproji_polyline_reserve(object, gproji_polyline_count_runs(&object->now, h), error))
-        return -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
+    if (h < 0 || gproji_edit_reserve(object, 1, 1, 0, gproji_polyline_count_runs(&object->now, h), error)) return -1;
     return object->now.origin[gproji_edit_split(object, h, t)];
 }
 
@@ -16084,13 +15964,13 @@ GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t 
                            "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
                            other);
     else
-        code = gproji_edit_reserve(object, 0, 1, 1, error);
+        code = gproji_edit_reserve(object, 0, 1, 1, 0, error);
     return code ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
     return h < 0 || gproji_check_collapse(object, h, error) ? -1 : gproji_edit_collapse(object, h, t);
 }
 
@@ -16103,46 +15983,12 @@ enum {
 /* Work arrays for cutting faces into triangles. */
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
-    int32_t *halfedge; /* polygon.capacity: from each corner on, in the part that is left */
-    int32_t *ear;      /* 2 * polygon.capacity: the corners before and after each ear, in the order they are cut */
-    int32_t ear_count;
+    int32_t *halfedge; /* 1 a corner: from it on, in the part that is left */
     int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
     double *least; /* ring_count^2: the least sum for the ring from i to j */
     int32_t *apex; /* ring_count^2: the third corner with which the triangle at i and j attains it */
 } gproji_triangulation;
-
-GPROJI_INLINE bool gproji_corners_joined(const gproji_edit_object *object, const gproji_polygon *polygon, int32_t a,
-                                         int32_t b) {
-    return gproji_halfedge_between(&object->view, polygon->vertex[a], polygon->vertex[b]) >= 0;
-}
-
-/* Cuts ears from a large polygon, as faces of surfaces are cut, until it is small enough. Without ears, takes any corner
-   whose neighbours have no edge yet; false without such a corner. */
-GPROJI_INTERNAL bool gproji_plan_ears(const gproji_edit_object *object, gproji_triangulation *work) {
-    gproji_polygon *polygon = &work->polygon;
-    int64_t budget = 512 * (int64_t)polygon->count;
-    int32_t left = polygon->count, b = 0, refused = 0, i;
-    bool any = false;
-    work->ear_count = 0;
-    while (left > GPROJI_KLINCSEK_MAX) {
-        int32_t a = polygon->prev[b], c = polygon->next[b];
-        any = any || refused >= left || budget <= 0;
-        if (refused >= 2 * left) return false;
-        if (gproji_corners_joined(object, polygon, a, c) || (!any && !gproji_is_ear(polygon, b, &budget))) {
-            ++refused, b = c;
-            continue;
-        }
-        work->ear[2 * work->ear_count] = a, work->ear[2 * work->ear_count + 1] = c;
-        ++work->ear_count;
-        polygon->next[a] = c, polygon->prev[c] = a;
-        --left, refused = 0, any = false;
-        b = c;
-    }
-    for (i = 0; i < left; ++i, b = polygon->next[b]) work->ring[i] = b;
-    work->ring_count = left;
-    return true;
-}
 
 /* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-6 to triangles turned over. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
@@ -16156,7 +16002,8 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
 }
 
 /* Finds the ring's cheapest triangulation (Klincsek 1980). False if each needs a diagonal that is an edge already. */
-GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_triangulation *work) {
+GPROJI_INTERNAL bool gproji_plan_ring(const gproj_mesh *mesh, gproji_triangulation *work) {
+    const gproji_polygon *polygon = &work->polygon;
     int32_t n = work->ring_count, gap, i, j, k;
     for (i = 0; i + 1 < n; ++i) work->least[i * n + i + 1] = 0;
     for (gap = 2; gap < n; ++gap) {
@@ -16165,11 +16012,13 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
             j = i + gap;
             *least = HUGE_VAL;
             work->apex[i * n + j] = -1;
-            if (gap < n - 1 && gproji_corners_joined(object, &work->polygon, work->ring[i], work->ring[j])) continue;
+            if (gap < n - 1 &&
+                gproji_halfedge_between(mesh, polygon->vertex[work->ring[i]], polygon->vertex[work->ring[j]]) >= 0)
+                continue;
             for (k = i + 1; k < j; ++k) {
                 double sum = work->least[i * n + k] + work->least[k * n + j];
                 if (!(sum < *least)) continue;
-                sum += gproji_triangle_cost(&work->polygon, work->ring[i], work->ring[k], work->ring[j]);
+                sum += gproji_triangle_cost(polygon, work->ring[i], work->ring[k], work->ring[j]);
                 if (!(sum < *least)) continue;
                 *least = sum;
                 work->apex[i * n + j] = k;
@@ -16182,18 +16031,22 @@ GPROJI_INTERNAL bool gproji_plan_ring(const gproji_edit_object *object, gproji_t
 /* Cuts one face into triangles; there is room. Nothing is changed after an error. */
 GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, gproji_triangulation *work, int32_t face,
                                                    gproj_error *error) {
-    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, i, h, n;
+    int32_t *halfedge = work->halfedge, stack[2 * GPROJI_KLINCSEK_MAX], depth = 0, b, i, h, n;
     gproji_polygon_set(&work->polygon, &object->view, face);
     for (i = 0, h = object->now.face_halfedge[face]; i < work->polygon.count; ++i, h = object->now.next[h])
         halfedge[i] = h;
-    if (!gproji_plan_ears(object, work) || !gproji_plan_ring(object, work))
+    b = gproji_cut_ears(&work->polygon, 0, GPROJI_KLINCSEK_MAX, &object->view);
+    n = work->ring_count = work->polygon.count - work->polygon.ears;
+    for (i = 0; b >= 0 && i < n; ++i, b = work->polygon.next[b]) work->ring[i] = b;
+    if (b < 0 || !gproji_plan_ring(&object->view, work))
         return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
                            "face %d cannot be cut into triangles: its diagonals are edges already", face);
-    for (i = 0; i < work->ear_count; ++i) {
-        int32_t a = work->ear[2 * i], c = work->ear[2 * i + 1];
-        halfedge[a] = gproji_edit_cut(object, halfedge[a], halfedge[c]);
+    for (i = 0; i < work->polygon.ears; ++i) {
+        const int32_t *ear = work->polygon.ear + 3 * (size_t)i;
+        halfedge[ear[0]] = gproji_edit_divide(object, face, halfedge[ear[0]], halfedge[ear[2]], true);
+        face = object->now.face[halfedge[ear[0]]]; /* what is left */
     }
-    n = work->ring_count;
+    for (i = 0; i < n; ++i) object->now.face[halfedge[work->ring[i]]] = face;
     stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
@@ -16218,7 +16071,7 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool pool;
     gproj_code code;
     int64_t cuts = 0, side;
-    int32_t f, first = face, last = face, degree = 3, *ints;
+    int32_t f, first = face, last = face, degree = 3;
     bool saved = false;
     if (!object || (face != -1 && !gproji_edit_given_face(object, face, error))) return -1;
     if (face == -1) first = 0, last = edit->face_count - 1;
@@ -16229,19 +16082,12 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     }
     if (!cuts) return 0;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_reserve(object, 0, cuts, cuts, error);
+    code = gproji_edit_reserve(object, 0, cuts, cuts, 0, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    memset(&work, 0, sizeof work);
-    work.polygon.capacity = degree;
-    work.polygon.xy = (double *)gproji_pool_take(&pool, degree, 2 * sizeof(double));
-    ints = (int32_t *)gproji_pool_take(&pool, degree, 6 * sizeof *ints);
+    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
     work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
-    if (!code && !(work.polygon.xy && ints && work.least && work.apex)) code = gproji_fail_memory(error);
-    if (!code) {
-        work.polygon.vertex = ints, work.polygon.next = ints + degree, work.polygon.prev = ints + 2 * (size_t)degree;
-        work.halfedge = ints + 3 * (size_t)degree, work.ear = ints + 4 * (size_t)degree;
-    }
+    if (!code && !gproji_polygon_take(&work.polygon, &pool, degree)) code = gproji_fail_memory(error);
     if (!code && face == -1) { /* all faces or none: a later one may be refused */
         saved = gproji_edit_save(object, &copy);
         if (!saved) code = gproji_fail_memory(error);
@@ -16325,7 +16171,7 @@ GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1, i, last;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error), i, last;
     int64_t count, runs = 0;
     gproji_strip strip;
     gproji_pool pool;
@@ -16340,9 +16186,8 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
                            "would be two edges between the new vertices",
                            strip.rung[0] / 2, strip.rung[1] / 2);
     /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
-    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, error);
     for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
-    if (!code) code = gproji_polyline_reserve(object, runs, error);
+    if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, runs, error);
     if (!code) {
         for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
         if (!strip.closed) {
@@ -16383,7 +16228,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gpr
 
 GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = object ? gproji_edit_given_edge(object, edge, t, error) : -1;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error);
     char message[GPROJ_MESSAGE_SIZE];
     gproji_edit_store copy;
     gproji_strip strip;
@@ -16406,21 +16251,18 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* Work arrays for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
+/* Work for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
 typedef struct gproji_dual {
-    gproji_soup soup;
-    double *position;
-    int32_t *degree, *corner;
+    gproji_draft draft;
     int32_t *vertex;   /* vertex_count: a vertex's number in the dual, or -1 */
     int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
     int32_t *seen;     /* face_count: the last face that met it as a neighbour */
-    int32_t *start, *polyline;
 } gproji_dual;
 
 /* Adds a vertex at the mean over `count` half-edges' origins, h and those that follow it. */
 GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dual, int32_t h, int32_t count) {
-    int32_t number = dual->soup.vertex_count++, k;
-    double *x = dual->position + 3 * (size_t)number;
+    int32_t number = dual->draft.soup.vertex_count++, k;
+    double *x = dual->draft.position + 3 * (size_t)number;
     gproji_set3(0, 0, 0, x);
     for (k = 0; k < count; ++k, h = mesh->next[h])
         gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
@@ -16429,16 +16271,16 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
 
 /* Numbers a vertex that is in the dual, too. */
 GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    int32_t number = dual->soup.vertex_count++;
-    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->position + 3 * (size_t)number);
+    int32_t number = dual->draft.soup.vertex_count++;
+    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->draft.position + 3 * (size_t)number);
     dual->vertex[vertex] = number;
 }
 
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
-    gproji_soup *soup = &dual->soup;
-    int32_t f, e, v, k, h, g, p, i, begin, end = 0, polylines = 0;
-    gproj_code code;
+    gproji_draft *draft = &dual->draft;
+    gproji_soup *soup = &draft->soup;
+    int32_t f, e, v, k, h, g, p, i, begin, end = 0;
     /* 1. No two faces may have two edges in common. */
     gproji_fill(dual->seen, mesh->face_count, -1);
     for (f = 0; f < mesh->face_count; ++f)
@@ -16466,29 +16308,26 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (last < 0) continue;
         begin = soup->corner_count;
         h = boundary ? gproji_rotate(mesh, last) : last;
-        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[h / 2];
+        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[h / 2];
         do {
-            dual->corner[soup->corner_count++] = mesh->face[h];
+            draft->corner[soup->corner_count++] = mesh->face[h];
             h = gproji_rotate(mesh, h);
         } while (h != last);
-        if (boundary) dual->corner[soup->corner_count++] = dual->midpoint[last / 2];
-        if (dual->vertex[v] >= 0) dual->corner[soup->corner_count++] = dual->vertex[v];
-        dual->degree[soup->face_count++] = soup->corner_count - begin;
+        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[last / 2];
+        if (dual->vertex[v] >= 0) draft->corner[soup->corner_count++] = dual->vertex[v];
+        draft->degree[soup->face_count++] = soup->corner_count - begin;
     }
     /* 4. Polylines that are in the dual as a whole. */
-    dual->start[0] = 0;
     for (p = 0; p < mesh->polyline_count; ++p) {
         for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
             v = dual->vertex[mesh->polyline_vertex[i]];
             if (v < 0) break;
-            dual->polyline[end++] = v;
+            draft->vertex[end++] = v;
         }
-        if (i == mesh->polyline_start[p + 1]) dual->start[++polylines] = end;
-        end = dual->start[polylines];
+        if (i == mesh->polyline_start[p + 1]) draft->start[++soup->polyline_count] = end;
+        end = draft->start[soup->polyline_count];
     }
-    soup->position = dual->position, soup->face_degree = dual->degree, soup->face_vertex = dual->corner;
-    code = gproji_mesh_build(made, soup, error);
-    return code ? code : gproji_mesh_set_polylines(made, polylines, dual->start, dual->polyline, error);
+    return gproji_mesh_build(made, soup, error);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
@@ -16498,26 +16337,16 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     gproji_pool pool;
     gproj_code code;
     int64_t vertices, edges, faces;
-    gproji_error_clear(error);
-    if (!mesh) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the mesh is NULL");
-        return NULL;
-    }
+    if (!gproji_given(mesh, "mesh", error)) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    memset(&dual, 0, sizeof dual);
-    dual.position = (double *)gproji_pool_take(&pool, faces + edges + vertices, 3 * sizeof(double));
-    dual.corner = (int32_t *)gproji_pool_take(&pool, 2 * edges + 3 * vertices, sizeof(int32_t));
-    dual.degree = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
     dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
     dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
     dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
-    dual.start = (int32_t *)gproji_pool_take(&pool, (int64_t)mesh->polyline_count + 1, sizeof(int32_t));
-    dual.polyline = (int32_t *)gproji_pool_take(&pool, mesh->polyline_start[mesh->polyline_count], sizeof(int32_t));
-    code = dual.position && dual.corner && dual.degree && dual.vertex && dual.midpoint && dual.seen && dual.start &&
-                   dual.polyline
+    code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
+                             mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
                ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
                : gproji_fail_memory(error);
     gproji_pool_give_all(&pool);
@@ -17305,7 +17134,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
     work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
     work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
     work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
-    for (v = 0; work.image && work.queue && work.reached && v < mesh->vertex_count; ++v) {
+    for (v = 0; !pool.failed && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
         /* 1. Reflections along a breadth-first tree, which keeps their products short. */
@@ -17334,7 +17163,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
         }
     }
     gproji_pool_give_all(&pool);
-    return work.image && work.queue && work.reached;
+    return !pool.failed;
 }
 
 /* -- the field for a face offset -- */
@@ -17435,7 +17264,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
     p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
     p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
     p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
-    taken = p.normal && p.direction && p.slope && p.step && p.image;
+    taken = !pool.failed;
     for (i = 0; taken && i < mesh->face_count; ++i)
         gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
     for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
@@ -17515,15 +17344,15 @@ GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b)
 
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
-    gproj_mesh *support = NULL;
+    gproji_mesh_object *object;
+    gproji_draft draft;
     gproji_pool pool;
-    double *position;
-    int32_t *degree, *corner, e;
+    gproj_code code = GPROJ_OK;
+    int32_t e;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
+        gproji_refuse(
+            error, "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
         return NULL;
     }
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
@@ -17531,26 +17360,25 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    gproji_pool_start(&pool, &heap);
-    position = (double *)gproji_pool_take(&pool, mesh->edge_count, 12 * sizeof *position);
-    degree = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, sizeof *degree);
-    corner = (int32_t *)gproji_pool_take(&pool, mesh->edge_count, 4 * sizeof *corner);
-    if (position && degree && corner) {
-        for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
-            double *out = position + 12 * (size_t)e;
-            gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
-            gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
-            gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
-            gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
-            degree[e] = 4;
-        }
-        for (e = 0; e < 4 * mesh->edge_count; ++e) corner[e] = e;
-        support = gproj_mesh_create(4 * mesh->edge_count, position, mesh->edge_count, degree, corner, host, error);
-    } else {
-        gproji_fail_memory(error);
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
+    gproji_pool_start(&pool, &object->heap);
+    if (!gproji_draft_take(&draft, &pool, 4 * (int64_t)mesh->edge_count, mesh->edge_count,
+                           4 * (int64_t)mesh->edge_count, 0, 0))
+        code = gproji_fail_memory(error);
+    for (e = 0; !code && e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+        double *out = draft.position + 12 * (size_t)e;
+        gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
+        gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
+        gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
+        gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
+        draft.degree[e] = 4;
     }
+    for (e = 0; !code && e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
+    draft.soup.vertex_count = 4 * mesh->edge_count, draft.soup.face_count = mesh->edge_count;
+    if (!code) code = gproji_mesh_build(object, &draft.soup, error);
     gproji_pool_give_all(&pool);
-    return support;
+    return gproji_mesh_done(object, code);
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
@@ -17663,6 +17491,7 @@ typedef struct gproji_patch {
 
 typedef struct gproji_filling {
     gproji_heap *heap;
+    gproji_pool pool; /* holds `seen` and `border` */
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
@@ -17971,10 +17800,12 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
 
 /* -- the plane -- */
 
-GPROJI_INTERNAL double gproji_distance2(const double *xy, int32_t i, int32_t j) {
-    double x = xy[2 * (size_t)j] - xy[2 * (size_t)i], y = xy[2 * (size_t)j + 1] - xy[2 * (size_t)i + 1];
-    return sqrt(x * x + y * y);
+/* The product (q - p)'(r - p) of points in the plane; see also gproji_turn2. */
+GPROJI_INLINE double gproji_dot2(const double *xy, int32_t p, int32_t q, int32_t r) {
+    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
+    return (b[0] - a[0]) * (c[0] - a[0]) + (b[1] - a[1]) * (c[1] - a[1]);
 }
+GPROJI_INLINE double gproji_distance2(const double *xy, int32_t i, int32_t j) { return sqrt(gproji_dot2(xy, i, j, j)); }
 
 /* Do the segments a b and c d have a common point? */
 GPROJI_INTERNAL bool gproji_segments_meet(const double *xy, int32_t a, int32_t b, int32_t c, int32_t d) {
@@ -17994,8 +17825,7 @@ GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32
     int32_t b = (i + 1) % count, d = (j + 1) % count;
     if (b == j || d == i) { /* neighbours meet if they fold back */
         int32_t at = b == j ? b : i, from = b == j ? i : j, to = b == j ? d : b;
-        const double *p = xy + 2 * (size_t)at, *q = xy + 2 * (size_t)from, *r = xy + 2 * (size_t)to;
-        double along = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
+        double along = gproji_dot2(xy, at, from, to);
         return along >= 0 && fabs(gproji_turn2(xy, at, from, to)) <= 1e-12 * along;
     }
     return gproji_segments_meet(xy, i, b, j, d);
@@ -18019,9 +17849,12 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
                                           int32_t *second) {
     gproji_hierarchy tree;
     gproji_ring2 ring;
+    gproji_pool pool;
+    bool built;
     ring.xy = xy, ring.count = count;
-    if (!gproji_hierarchy_build(heap, &tree, count, gproji_ring_box, &ring)) return false;
-    for (*first = 0, *second = count; *first < count; ++*first) {
+    gproji_pool_start(&pool, heap);
+    built = gproji_hierarchy_build(&pool, &tree, count, gproji_ring_box, &ring);
+    for (*first = 0, *second = count; built && *first < count; ++*first) {
         int32_t stack[GPROJI_TREE_DEPTH], depth = 1, k;
         double low[3], high[3];
         gproji_ring_box(&ring, *first, low, high);
@@ -18042,16 +17875,13 @@ GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, i
         }
         if (*second < count) break;
     }
-    gproji_hierarchy_give(heap, &tree);
-    return true;
+    gproji_pool_give_all(&pool);
+    return built;
 }
 
 /* The angle from the direction p q to the direction p r, counter-clockwise, 0 to 2 pi. */
 GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q, int32_t r) {
-    const double *a = xy + 2 * (size_t)p, *b = xy + 2 * (size_t)q, *c = xy + 2 * (size_t)r;
-    double u[2], v[2], angle;
-    u[0] = b[0] - a[0], u[1] = b[1] - a[1], v[0] = c[0] - a[0], v[1] = c[1] - a[1];
-    angle = atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1]);
+    double angle = atan2(gproji_turn2(xy, p, q, r), gproji_dot2(xy, p, q, r));
     return angle < 0 ? angle + 2 * GPROJI_PI : angle;
 }
 
@@ -18066,10 +17896,10 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     gproj_code code;
     /* 1. Points are finite, and no two neighbours coincide. */
     if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           f->points ? "a closed curve of %d points; it needs at least 3"
-                                     : "the points of the curve are NULL",
-                           f->count);
+        return gproji_refuse(f->error,
+                             f->points ? "a closed curve of %d points; it needs at least 3"
+                                       : "the points of the curve are NULL",
+                             f->count);
     code = gproji_check_positions(f->count, f->points, "point", f->error);
     if (code) return code;
     for (i = 0; i < f->count; ++i) {
@@ -18079,7 +17909,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                                "points %d and %d of the curve are the same; leave one out%s", i, j,
                                j == 0 ? " (the curve is closed without it)" : "");
     }
-    f->seen = (double *)gproji_take(f->heap, (size_t)f->count, 2 * sizeof(double));
+    f->seen = (double *)gproji_pool_take(&f->pool, f->count, 2 * sizeof(double));
     if (!f->seen) return gproji_fail_memory(f->error);
     /* 2. The plane orthogonal to the vectorial area: the curve runs counter-clockwise in it. */
     gproji_set3(0, 0, 0, f->normal);
@@ -18107,11 +17937,8 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                            i, j);
     /* 3. Options. */
     if (o->rings < 0 || o->rings > GPROJI_FILL_RINGS)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%d rings; give 0 to %d", o->rings,
-                           (int32_t)GPROJI_FILL_RINGS);
-    if (o->variant < 0)
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant %d; the first is 0",
-                           o->variant);
+        return gproji_refuse(f->error, "%d rings; give 0 to %d", o->rings, (int32_t)GPROJI_FILL_RINGS);
+    if (o->variant < 0) return gproji_refuse(f->error, "variant %d; the first is 0", o->variant);
     if (!(o->edge_length >= 0) || !gproji_is_finite(o->edge_length))
         return gproji_fail(f->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "the wanted edge length is %g; it must be positive, or 0 for the mean of the curve",
@@ -18134,9 +17961,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     int32_t i, n;
     bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "%d corners%s; give at least 2, or none to have them found", o->corner_count,
-                           o->corner_count > 1 ? " in an array that is NULL" : "");
+        return gproji_refuse(f->error, "%d corners%s; give at least 2, or none to have them found", o->corner_count,
+                             o->corner_count > 1 ? " in an array that is NULL" : "");
     for (i = 0; i < o->corner_count; ++i) {
         int32_t c = o->corners[i], before = i > 0 ? o->corners[i - 1] : -1;
         if (c < 0 || c >= f->count)
@@ -18168,9 +17994,8 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     }
     f->sides = (int32_t)f->corner.count;
     if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
-        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
-                           o->subdivisions ? "" : " by a NULL array", f->sides);
+        return gproji_refuse(f->error, "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
+                             o->subdivisions ? "" : " by a NULL array", f->sides);
     return taken ? GPROJ_OK : gproji_fail_memory(f->error);
 }
 
@@ -18285,7 +18110,7 @@ GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
 /* Places the boundary's vertices and makes the first outline, which follows it all. */
 GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     int32_t side, from, to, i, j;
-    f->border = (double *)gproji_take(f->heap, (size_t)f->boundary, 3 * sizeof(double));
+    f->border = (double *)gproji_pool_take(&f->pool, f->boundary, 3 * sizeof(double));
     if (!f->border) return gproji_fail_memory(f->error);
     for (side = 0; side < f->sides; ++side) {
         int32_t edges = f->start.data[side + 1] - f->start.data[side];
@@ -18344,6 +18169,13 @@ typedef struct gproji_outline {
     int32_t count;
     double edge; /* mean edge length, for cuts */
 } gproji_outline;
+
+/* The outline from one place in f->polygon to another. */
+GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_t start, int32_t end) {
+    gproji_outline o;
+    o.f = f, o.entry = f->polygon.data + start, o.count = end - start, o.edge = 0;
+    return o;
+}
 
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
 
@@ -18416,9 +18248,7 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
         double along, off;
         if (p == a || p == b) continue;
         if (q != a && q != b && gproji_segments_meet(xy, a, b, p, q)) return;
-        along = ((xy[2 * p] - xy[2 * a]) * (xy[2 * b] - xy[2 * a]) +
-                 (xy[2 * p + 1] - xy[2 * a + 1]) * (xy[2 * b + 1] - xy[2 * a + 1])) /
-                length;
+        along = gproji_dot2(xy, a, p, b) / length;
         off = fabs(gproji_turn2(xy, a, b, p)) / length;
         if (along > 0 && along < length) nearest = gproji_fmin(nearest, off);
     }
@@ -18458,18 +18288,17 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
 GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
+    gproji_outline o;
     for (k = i; k <= j; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
     to = (int32_t)f->polygon.count - 1;
     for (k = 0; k < inner; ++k)
         if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
     if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    o = gproji_outline_of(f, from, (int32_t)f->polygon.count);
     for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
-        int32_t at = end ? to : from;
-        gproji_outline o;
-        o.f = f, o.entry = f->polygon.data + from, o.count = (int32_t)f->polygon.count - from, o.edge = 0;
-        f->polygon.data[at] &= ~1;
-        f->polygon.data[at] |= gproji_outline_angle(&o, at - from) < GPROJI_OBTUSE;
+        int32_t at = end ? to - from : 0;
+        o.entry[at] = (o.entry[at] & ~1) | (gproji_outline_angle(&o, at) < GPROJI_OBTUSE);
     }
     return true;
 }
@@ -18479,10 +18308,9 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
     size_t at;
     int32_t start, k;
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-        gproji_outline o;
+        gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
         gproji_cut_line cut;
         int32_t a, b, first = f->vertices;
-        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
         for (k = 0; k < o.count; ++k)
             o.edge +=
                 gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
@@ -18860,25 +18688,19 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
 
 /* Makes the mesh: positions in space, faces, and the sides as polylines. */
 GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
-    int32_t faces = (int32_t)f->quad.count / 4, side, i, v;
-    gproji_ints line = {NULL, 0, 0}, start = {NULL, 0, 0};
-    gproji_soup soup;
+    int32_t faces = (int32_t)f->quad.count / 4, side, i, v, end = 0;
+    gproji_draft draft;
     gproji_pool pool;
-    double *height, *position;
-    int32_t *degree;
-    bool taken;
-    gproj_code code;
+    double *height;
+    gproj_code code = GPROJ_OK;
     gproji_pool_start(&pool, f->heap);
     height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
-    position = (double *)gproji_pool_take(&pool, 3 * (int64_t)f->vertices, sizeof *position);
-    degree = (int32_t *)gproji_pool_take(&pool, faces, sizeof *degree);
-    taken = height && position && degree && gproji_ints_add(f->heap, &start, 0);
-    for (side = 0; taken && side < f->sides; ++side) {
-        for (i = f->start.data[side]; taken && i <= f->start.data[side + 1]; ++i)
-            taken = gproji_ints_add(f->heap, &line, i % f->boundary);
-        taken = taken && gproji_ints_add(f->heap, &start, (int32_t)line.count);
+    if (!gproji_draft_take(&draft, &pool, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides))
+        code = gproji_fail_memory(f->error);
+    for (side = 0; !code && side < f->sides; ++side) {
+        for (i = f->start.data[side]; i <= f->start.data[side + 1]; ++i) draft.vertex[end++] = i % f->boundary;
+        draft.start[side + 1] = end;
     }
-    code = taken ? GPROJ_OK : gproji_fail_memory(f->error);
     /* Heights over the plane: the curve's, harmonic inside. */
     for (v = 0; !code && v < f->boundary; ++v) {
         double d[3];
@@ -18886,23 +18708,20 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
         height[v] = gproji_dot3(d, f->normal);
     }
     if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    if (!code) memcpy(position, f->border, 3 * (size_t)f->boundary * sizeof *position);
+    if (!code) memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
     for (v = f->boundary; !code && v < f->vertices; ++v) {
-        double *out = position + 3 * (size_t)v;
+        double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
         gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
         gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
     if (!code) {
-        gproji_fill(degree, faces, 4);
-        soup.vertex_count = f->vertices, soup.face_count = faces, soup.corner_count = 0;
-        soup.position = position, soup.face_degree = degree, soup.face_vertex = f->quad.data;
-        code = gproji_mesh_build(object, &soup, f->error);
+        gproji_fill(draft.degree, faces, 4);
+        memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
+        draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
+        code = gproji_mesh_build(object, &draft.soup, f->error);
     }
-    if (!code) code = gproji_mesh_set_polylines(object, f->sides, start.data, line.data, f->error);
-    gproji_ints_give(f->heap, &line);
-    gproji_ints_give(f->heap, &start);
     gproji_pool_give_all(&pool);
     return code;
 }
@@ -18949,10 +18768,8 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     /* 2. All cuts before the first patch: vertices on cuts are numbered before those inside. */
     if (!gproji_cut_outlines(f)) return gproji_fail_memory(f->error);
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
-        gproji_outline o;
-        if (f->patch.data[at] < 0) continue;
-        o.f = f, o.entry = f->polygon.data + start, o.count = f->patch.data[at] - start, o.edge = 0;
-        if (!gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
+        gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
+        if (o.count > 0 && !gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
     /* 3. Valences inside, before the work on positions. */
     count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
@@ -18990,16 +18807,19 @@ GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
 
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = gproji_mesh_begin(host, error);
+    gproji_mesh_object *object;
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
+    gproji_error_clear(error);
+    object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
     memset(&f, 0, sizeof f);
     memset(&found, 0, sizeof found);
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
+    gproji_pool_start(&f.pool, f.heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_divide_sides(&f);
@@ -19007,8 +18827,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_fill_outline(&f);
     if (!code) code = gproji_build_filling(&f, object);
     if (!code) gproji_describe_filling(&f, &object->mesh, &found);
-    gproji_give(f.heap, f.seen, (size_t)f.count, 2 * sizeof(double));
-    gproji_give(f.heap, f.border, (size_t)f.boundary, 3 * sizeof(double));
+    gproji_pool_give_all(&f.pool);
     gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
     gproji_ints_give(f.heap, &f.start);
