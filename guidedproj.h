@@ -73,7 +73,7 @@
      verdict          the outcome of a solve and a sentence about it
      spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
      cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
-     frame            the iterations of a solve between two pictures (gproj_step)
+     frame            the iterations of a solve between two pictures (gproj_solve_advance)
    Residuals of a form are in mean edge lengths.
 
    HOW IT WORKS   Guided projection (Tang et al. 2014) is Newton's method for more unknowns than equations.
@@ -1385,7 +1385,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
      are let go; gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps, up to
-     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
+     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
+     (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -1393,28 +1394,28 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
-/* A solve in frames, for programs that draw between iterations: begin once, step each frame, and as long as
-   gproj_step_is_on there is more to do.
+/* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as
+   gproj_solve_is_on there is more to do.
 
-       gproj_step_begin(form, 20, NULL);
-       while (gproj_step_is_on(form)) {
-           result = gproj_step(form, 0.01); // by the host's clock; 0 seconds: one iteration
+       gproj_solve_begin(form, 20, NULL);
+       while (gproj_solve_is_on(form)) {
+           result = gproj_solve_advance(form, 0.01); // by the host's clock; 0 seconds: one iteration
            draw(mesh);
        }
 
-   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step
-   takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0
-   seconds: one, without a clock. It writes the positions and returns the state of the solve: GPROJ_TIME_OUT while it is
-   on, then the verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
-   gproj_solve. Between two frames weights may be changed and targets moved; vertices are moved by targets, or before
-   another gproj_step_begin: positions are only written. gproj_step_stop ends it at the present positions; so do
-   gproj_solve, gproj_drag_begin and another gproj_step_begin. If groups or rows were added in between it fails. After a
-   failure, such as seconds without a clock in the host, or an error of the form, it is no longer on.
-   options->time_budget counts the seconds inside all steps. */
-GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
-GPROJ_API bool gproj_step_is_on(const gproj_form *form);
-GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
-GPROJ_API void gproj_step_stop(gproj_form *form);
+   gproj_solve_begin loads the positions and takes no step; false: it was refused, and gproj_solve_advance says why.
+   gproj_solve_advance takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and
+   at least one; 0 seconds: one, without a clock. It writes the positions and returns the state of the solve:
+   GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations, schedules and, in the end,
+   the bytes are those of one gproj_solve. Between two frames weights may be changed and targets moved; vertices are
+   moved by targets, or before another gproj_solve_begin: positions are only written. gproj_solve_stop ends it at the
+   present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin. If groups or rows were added in
+   between it fails. After a failure, such as seconds without a clock in the host, or an error of the form, it is no
+   longer on. options->time_budget counts the seconds inside all frames. */
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
+GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
+GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
+GPROJ_API void gproj_solve_stop(gproj_form *form);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
@@ -1588,10 +1589,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
-   (gproj_step). A restored form goes on as the saved one would have: to the bit on the same processor and build, if no
-   first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The state
-   lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the same
-   calls have made from the same mesh.
+   (gproj_solve_begin). A restored form goes on as the saved one would have: to the bit on the same processor and build,
+   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The
+   state lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the
+   same calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -18601,7 +18602,7 @@ typedef struct gproji_corners {
     int32_t wakings; /* in this solve */
 } gproji_corners;
 
-/* A solve in frames (gproj_step). */
+/* A solve in frames (gproj_solve_begin). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
@@ -22559,19 +22560,19 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     return result;
 }
 
-GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     if (!gproji_form_is_open(form)) return false;
     form->solve.finished = !gproji_begin_solve(form, iterations, options);
     return form->solve.on;
 }
 
-GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
+GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
-GPROJ_API void gproj_step_stop(gproj_form *form) {
+GPROJ_API void gproj_solve_stop(gproj_form *form) {
     if (form && form->system && !form->system->solving) form->solve.on = form->solve.finished = false;
 }
 
-/* Refuses a step; if a solve is on it ends with that, for a program may step for as long as it is on. */
+/* Refuses a frame; if a solve is on it ends with that, for a program may advance for as long as it is on. */
 GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code code, const char *sentence) {
     gproj_result result = gproji_refused_result(code, sentence);
     if (!solve->on) return result;
@@ -22581,19 +22582,19 @@ GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code c
     return result;
 }
 
-GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
+GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
     gproji_solve *solve;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
     if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
         return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
-                                 "step: seconds must not be negative, and need a clock in the host");
+                                 "advance: seconds must not be negative, and need a clock in the host");
     if (solve->on && !gproji_has_structure(form->system, solve->structure))
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
-                                 "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
+                                 "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
-    return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing is under way, call gproj_step_begin before");
+    return gproji_refused_result(GPROJ_ERROR_STATE, "advance: nothing is under way, call gproj_solve_begin before");
 }
 
 /* ============================================================================================================

@@ -68,7 +68,7 @@ static void handle(editor *e, const char *event) {
     int32_t vertex = HANDLE;
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     switch (event[0]) {
-    case 's': gproj_step_begin(e->form, 30, NULL); break;
+    case 's': gproj_solve_begin(e->form, 30, NULL); break;
     case 'g': /* grab: stops a solve that is on */
         e->drag = gproj_drag_begin(e->form, &handles, NULL, NULL);
         follow_mouse(e, 0);
@@ -102,9 +102,9 @@ int main(void) {
     gproj_add_fixed_corners(e.form, 1);
     gproj_add_fairness(e.form, 0.05);
     while (*next) { /* one frame */
-        bool busy = gproj_step_is_on(e.form);
-        if (busy) gproj_step(e.form, frame_seconds); /* as many iterations as fit, at least one */
-        if (busy && !gproj_step_is_on(e.form)) remember(&e);
+        bool busy = gproj_solve_is_on(e.form);
+        if (busy) gproj_solve_advance(e.form, frame_seconds); /* as many iterations as fit, at least one */
+        if (busy && !gproj_solve_is_on(e.form)) remember(&e);
         if (busy && **next == 'w') continue; /* the script waits for the solver; a user would not */
         handle(&e, *next);
         printf("%-7s handle at %.3f, planarity %s\n", *next++, e.mesh->position[3 * HANDLE + 2],

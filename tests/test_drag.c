@@ -630,8 +630,8 @@ GPROJT_TEST(misused) {
     memcpy(p, stage.start + 3 * v, sizeof p);
     gprojt_check_refusal(stage.form, &handles, NULL, GPROJ_ERROR_STATE, "another drag is under way");
     GPROJT_CHECK(strstr(gproj_solve(stage.form, 5, NULL).message, "a drag is under way"));
-    GPROJT_CHECK(!gproj_step_begin(stage.form, 5, NULL));
-    GPROJT_CHECK(strstr(gproj_step(stage.form, 0).message, "a drag is under way"));
+    GPROJT_CHECK(!gproj_solve_begin(stage.form, 5, NULL));
+    GPROJT_CHECK(strstr(gproj_solve_advance(stage.form, 0).message, "a drag is under way"));
     GPROJT_CHECK(gproj_state_restore(stage.form, state, size, &error) == GPROJ_ERROR_STATE);
     GPROJT_CHECK(strstr(error.message, "a drag is under way"));
     p[1] = HUGE_VAL;

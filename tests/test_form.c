@@ -2057,9 +2057,9 @@ GPROJT_TEST(beyond_all_coordinates) {
         GPROJT_CHECK(result.outcome == GPROJ_STALLED && strstr(result.message, "beyond coordinates of 1e70"));
         GPROJT_CHECK(gprojt_unmoved(mesh, before) && gproj_form_error(form)->code == GPROJ_OK);
     }
-    GPROJT_CHECK(gproj_step_begin(form, 60, NULL));
-    while (gproj_step_is_on(form)) gproj_step(form, 0);
-    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
+    GPROJT_CHECK(gproj_solve_begin(form, 60, NULL));
+    while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
     free(before);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);

@@ -1955,12 +1955,12 @@ static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
     double begin = now(NULL), limit = how->time_budget;
     gproj_solve_options options = *how;
     options.time_budget = 0;
-    gproj_step_begin(t->form, t->iterations, &options);
+    gproj_solve_begin(t->form, t->iterations, &options);
     if (!restore(t)) return false;
-    if (!gproj_step_is_on(t->form)) gproj_step_begin(t->form, t->iterations, &options);
+    if (!gproj_solve_is_on(t->form)) gproj_solve_begin(t->form, t->iterations, &options);
     do {
-        t->result = gproj_step(t->form, 0);
-    } while (gproj_step_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
+        t->result = gproj_solve_advance(t->form, 0);
+    } while (gproj_solve_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
     return true;
 }
 
