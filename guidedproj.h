@@ -229,6 +229,10 @@
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
+   NO BOUND   is an infinity: -INFINITY for a lower bound, INFINITY for an upper bound and for seconds (<math.h>;
+     HUGE_VAL is the same number). In options 0, the default, is no bound either. Bounds that are NaN, or that no number
+     satisfies, are refused by name.
+
    MEMORY   Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
      back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
      nothing, unless during a solve a group first gets a weight or the guard first acts (then there is one analysis
@@ -490,8 +494,8 @@ typedef struct gproj_least_squares {
     const int32_t *row;   /* of each entry, in any order; entries at the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
-    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
-    const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
+    const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
+    const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
     double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
 } gproj_least_squares;
 
@@ -648,7 +652,7 @@ typedef struct gproj_solve_options {
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
                            steps fall short near the end) */
-    double time_budget; /* seconds by the host's clock; 0 means none */
+    double time_budget; /* seconds by the host's clock; 0 or INFINITY: no bound */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
@@ -1298,8 +1302,8 @@ GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double wei
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight);
 
-/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower
-   bound, a max of 0 or INFINITY no upper one.
+/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. Lengths, areas and costs are
+   never negative: min is -INFINITY (no bound) or >= 0, where 0 adds no rows either; max > 0 or INFINITY (no bound).
 
    Lengths of these edges (as for gproj_add_lengths):
        (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
@@ -1405,13 +1409,13 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 
    gproj_solve_begin loads the positions and takes no step; false: it was refused, and gproj_solve_advance says why.
    gproj_solve_advance takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and
-   at least one; 0 seconds: one, without a clock. It writes the positions and returns the state of the solve:
-   GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations, schedules and, in the end,
-   the bytes are those of one gproj_solve. Between two frames weights may be changed and targets moved; vertices are
-   moved by targets, or before another gproj_solve_begin: positions are only written. gproj_solve_stop ends it at the
-   present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin. If groups or rows were added in
-   between it fails. After a failure, such as seconds without a clock in the host, or an error of the form, it is no
-   longer on. options->time_budget counts the seconds inside all frames. */
+   at least one; 0 seconds: one, and INFINITY: all that are left, without a clock. It writes the positions and returns
+   the state of the solve: GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations,
+   schedules and, in the end, the bytes are those of one gproj_solve. Between two frames weights may be changed and
+   targets moved; vertices are moved by targets, or before another gproj_solve_begin: positions are only written.
+   gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin.
+   If groups or rows were added in between it fails. After a failure, such as seconds without a clock in the host, or an
+   error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
@@ -1456,7 +1460,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
 GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The stress of these edges is bounded: min <= w l / A <= max, l the length, A = sections[k] > 0 (paper 3.1); NULL
-   sections: A = 1, bounds of the force. min = -INFINITY or max = INFINITY: no bound on that side. */
+   sections: A = 1, bounds of the force. */
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight);
 /* A wish: opposite edges in each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
@@ -1537,7 +1541,7 @@ typedef struct gproj_handles {
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
        anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
-       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -6830,16 +6834,24 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return GPROJ_OK;
 }
 
-/* Reads a bound as a finite number: `none`, -NONE or NONE, if there is no bound. False for NaN and for a bound on the
-   wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
-GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
+/* Reads a bound as a finite number: `none`, -NONE or NONE, for NULL and the infinity on that side. Fails for NaN, the
+   other infinity, and numbers beyond 1e50. Infinities are told by their bits: comparisons may be compiled for finite
+   numbers only. */
+GPROJI_INTERNAL bool gproji_squares_bound(gproji_squares *s, const char *name, const double *bound, int32_t j,
+                                          double none, double *out) {
     uint64_t bits;
     *out = none;
     if (!bound) return true;
     memcpy(&bits, &bound[j], sizeof bits);
-    if (!gproji_is_finite(bound[j])) return (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0);
-    if (fabs(bound[j]) <= GPROJI_SQUARES_HUGE) *out = bound[j];
-    return *out == bound[j] || (bound[j] < 0) == (none < 0);
+    if (!gproji_is_finite(bound[j]) && (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0)) return true;
+    if (gproji_squares_finite(bound[j])) {
+        *out = bound[j];
+        return true;
+    }
+    s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                          "least squares: %s[%d] is %g, but a bound is a number up to 1e50, or %sINFINITY for none",
+                          name, j, bound[j], none < 0 ? "-" : "");
+    return false;
 }
 
 /* Takes the arrays whose sizes are known, and reads the bounds. */
@@ -6871,11 +6883,13 @@ GPROJI_INTERNAL void gproji_squares_begin(gproji_squares *s) {
     for (k = 0; k < 7; ++k, at += 2 * n) *by_pair[k] = space + at;
     s->residual = space + at, s->magnitude = space + at + m;
     for (j = 0; j < n && s->code == GPROJ_OK; ++j) {
-        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
-        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
-        if (!good || s->lower[j] > s->upper[j])
-            s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
-                                  "least squares: variable %d has no number between its bounds", j);
+        if (!gproji_squares_bound(s, "lower", p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]) ||
+            !gproji_squares_bound(s, "upper", p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]))
+            return;
+        if (s->lower[j] > s->upper[j])
+            s->code =
+                gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                            "least squares: lower[%d] = %g is above upper[%d] = %g", j, s->lower[j], j, s->upper[j]);
         s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (s->lower[j] > -GPROJI_SQUARES_NONE) in->variable[in->pairs] = j, in->sign[in->pairs++] = 1;
@@ -11760,6 +11774,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     memset(loop, 0, sizeof *loop);
     loop->system = s;
     if (options) loop->options = *options;
+    if (loop->options.time_budget > DBL_MAX) loop->options.time_budget = 0;
     loop->iterations = iterations;
     loop->frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
@@ -20179,16 +20194,26 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 
 /* -- bounds, total area, cost -- */
 
-/* Refuses bounds that make no sense; bound = at least and at most, times `scale`, 0 and infinite without a bound. */
+/* Refuses bounds that are no numbers, or that no number satisfies. */
+GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name, double min, double max) {
+    if (min <= max && (min <= 0 || gproji_is_finite(min)) && (max >= 0 || gproji_is_finite(max))) return true;
+    gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min, max);
+    return false;
+}
+
+/* Takes bounds for something that is never negative: bound = at least and at most, times `scale`; 0 and infinite
+   without a bound. */
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
-    if (max >= 0 && !(max > 0)) max = HUGE_VAL;
-    if (!(min >= 0) || !(max >= min) || !gproji_is_finite(min)) {
+    if (!gproji_bounds_are_valid(form, name, min, max)) return false;
+    if ((min < 0 && gproji_is_finite(min)) || !(max > 0)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: at least %g and at most %g: bounds need 0 <= min <= max", name, min, max);
+                    "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY for none",
+                    name, min, max);
         return false;
     }
-    bound[0] = min * scale;
+    bound[0] = min > 0 ? min * scale : 0;
     bound[1] = gproji_is_finite(max) ? max * scale : HUGE_VAL;
     return true;
 }
@@ -20342,7 +20367,7 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const char *name, gpr
     return gproji_add_global_rows(form, part, name, kind, weight, rows, gproji_refresh_cost);
 }
 
-/* Prescribes a value > 0: "0 means no bound" does not apply to it. */
+/* Prescribes a value > 0: infinities, which bounds may be, are refused. */
 GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const char *name, double length_price,
                                                     double area_price, double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
@@ -20824,11 +20849,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     int32_t k, side;
     if (!gproji_has_statics(form, "stress bounds") || !gproji_edges_are_valid(form, "stress bounds", count, edges))
         return -1;
-    if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "stress bounds: the least, %g, is not below the greatest, %g", min, max);
-        return -1;
-    }
+    if (!gproji_bounds_are_valid(form, "stress bounds", min, max)) return -1;
     for (k = 0; sections && k < count; ++k) {
         if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
@@ -22586,7 +22607,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
     gproji_solve *solve;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
-    if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
+    if (!(seconds >= 0) || (seconds > 0 && gproji_is_finite(seconds) && !form->host.clock.now))
         return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
                                  "advance: seconds must not be negative, and need a clock in the host");
     if (solve->on && !gproji_has_structure(form->system, solve->structure))
@@ -23651,9 +23672,9 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
     if (statics && gproji_is_on(form, statics->group) && !statics->started)
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "drag: the forces have no values yet, solve the form before or set them");
-    if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
-                           options->residual_bound);
+    if (options && !(options->residual_bound >= 0))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "drag: a residual bound of %g is not >= 0", options->residual_bound);
     if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
     for (k = 0; k < h->count; ++k) {
@@ -23690,6 +23711,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     }
     drag->form = form;
     if (options) drag->options = *options;
+    if (drag->options.residual_bound > DBL_MAX) drag->options.residual_bound = 0;
     gproji_pool_start(&drag->pool, &drag->own);
     gproji_error_clear(&drag->error);
     code = gproji_take_drag(drag, handles) ? gproji_write_state(form, drag->state, drag->state_size, error)

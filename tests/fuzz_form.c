@@ -27,7 +27,7 @@ typedef struct gprojt_ask {
     int32_t group, count;
     int32_t vertex[GPROJT_LIST];
     double position[3 * GPROJT_LIST];
-    double min, max; /* of lengths, areas, a cost; 0: none */
+    double min, max; /* of lengths, areas, a cost; infinite: none */
     bool partly;     /* some of its elements have other weights */
 } gprojt_ask;
 
@@ -265,7 +265,7 @@ static double gprojt_off_balance(const gprojt_case *c) {
 
 static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     static const double parts[4] = {0.7, 1, 1.2, 3};
-    double part = parts[a->count % 4], total = part * (a->max > 0 ? a->max : 1);
+    double part = parts[a->count % 4], total = part * (a->max < INFINITY ? a->max : 1);
     switch (a->what) {
     case GPROJT_PLANAR: return gproj_add_planarity(c->form, weight);
     case GPROJT_FIX: return gproj_add_fixed(c->form, a->count, a->vertex, weight);
@@ -311,13 +311,14 @@ static void gprojt_schedule_of_bytes(gprojt_case *c, int32_t group) {
 }
 
 static void gprojt_bounds_of_bytes(gprojt_case *c, gprojt_ask *a) {
-    static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {0, 1, 1.3, 4};
+    static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {INFINITY, 1, 1.3, 4};
     double edge = gproj_mesh_mean_edge_length(c->mesh), unit = edge;
     if (a->what == GPROJT_AREAS) unit = edge * edge;
     if (a->what == GPROJT_TOTAL_AREA || a->what == GPROJT_TOTAL_AREA_BOUNDS) unit = c->mesh->face_count * edge * edge;
     if (a->what == GPROJT_COST || a->what == GPROJT_TOTAL_COST)
         unit = c->mesh->edge_count * edge + 0.5 * c->mesh->face_count * edge * edge;
     a->min = mins[gprojt_choose(c, 4)] * unit, a->max = maxs[gprojt_choose(c, 4)] * unit;
+    if (!(a->max > 0)) a->max = INFINITY; /* a mesh without edges */
 }
 
 /* Other weights for some elements of a group. */
@@ -428,7 +429,7 @@ static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     for (e = 0; a->what == GPROJT_LENGTHS && e < mesh->edge_count; ++e) {
         double length = gprojt_edge_length(mesh, e);
         if (a->min > 0) off = fmax(off, (a->min - length) * (a->min + length) / (2 * a->min));
-        if (a->max > 0) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
+        if (a->max < INFINITY) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
     }
     return off;
 }

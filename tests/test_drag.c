@@ -484,7 +484,7 @@ GPROJT_TEST(cancelled_to_the_bit) {
             uint8_t *before = gprojt_save(stage.form, &size), *after;
             gproj_drag *drag;
             memset(&options, 0, sizeof options);
-            options.residual_bound = bounded ? 1e-3 : 0;
+            options.residual_bound = bounded ? 1e-3 : INFINITY;
             drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
             GPROJT_REQUIRE(drag);
             for (k = 0; k < 5; ++k) gprojt_pull(&stage, drag, v, 0.1 * k);
@@ -607,6 +607,8 @@ GPROJT_TEST(refused) {
     handles.position = NULL;
     options.residual_bound = -1;
     gprojt_check_refusal(form, &handles, &options, GPROJ_ERROR_ARGUMENT, "a residual bound of -1");
+    options.residual_bound = NAN;
+    gprojt_check_refusal(form, &handles, &options, GPROJ_ERROR_ARGUMENT, "a residual bound of ");
     gprojt_check_refusal(NULL, &handles, NULL, GPROJ_ERROR_MEMORY, "there is no object");
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
     standing = gprojt_design(mesh, GPROJT_STANDING, NULL);

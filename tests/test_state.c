@@ -93,6 +93,30 @@ static bool gprojt_cancel(void *user, gproj_system *system, const gproj_iteratio
     return iteration->number < *(const int32_t *)user;
 }
 
+/* INFINITY is no bound, of a frame and of a solve, and needs no clock. */
+GPROJT_TEST(frames_without_bound) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.08), *other = gprojt_roof(5, 0.08);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL), *at_once = gprojt_design(other, GPROJT_PLANAR, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.time_budget = INFINITY;
+    GPROJT_CHECK(gproj_solve(at_once, 30, &options).outcome == GPROJ_CONVERGED);
+    GPROJT_REQUIRE(gproj_solve_begin(form, 30, &options));
+    gproj_solve_advance(form, 0);
+    result = gproj_solve_advance(form, INFINITY);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !gproj_solve_is_on(form));
+    GPROJT_CHECK(gprojt_unmoved(mesh, other->position));
+    options.time_budget = NAN;
+    GPROJT_CHECK(strstr(gproj_solve(form, 30, &options).message, "time budget"));
+    options.time_budget = -INFINITY;
+    GPROJT_CHECK(strstr(gproj_solve(form, 30, &options).message, "time budget"));
+    gproj_form_destroy(form);
+    gproj_form_destroy(at_once);
+    gproj_mesh_destroy(mesh);
+    gproj_mesh_destroy(other);
+}
+
 GPROJT_TEST(frames_can_be_left) {
     gproj_mesh *mesh = gprojt_roof(5, 0.08);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -123,6 +147,7 @@ GPROJT_TEST(frames_can_be_left) {
     /* what does not go */
     GPROJT_CHECK(strstr(gproj_solve_advance(form, -1).message, "must not be negative"));
     GPROJT_CHECK(strstr(gproj_solve_advance(form, 1).message, "a clock"));
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, NAN).message, "must not be negative"));
     GPROJT_CHECK(!gproj_solve_begin(form, -1, NULL) && strstr(gproj_solve_advance(form, 0).message, "-1 iterations"));
     gproj_solve_begin(form, 20, NULL);
     group = gproj_add_closeness(form, 0.01);
@@ -502,6 +527,7 @@ GPROJT_TEST(failing_allocations) {
 int main(void) {
     GPROJT_RUN(frames_are_one_solve);
     GPROJT_RUN(frames_have_their_time);
+    GPROJT_RUN(frames_without_bound);
     GPROJT_RUN(frames_can_be_left);
     GPROJT_RUN(failures_end_frames);
     GPROJT_RUN(frames_follow_targets);

@@ -395,12 +395,11 @@ static bool read_range(const char *value, tool_demand *range) {
            (first == 0 || rest == 0 || range->min <= range->max);
 }
 
-/* Reads bounds of lengths and areas: 0 is none. */
+/* Reads bounds of lengths and areas, which are never negative. */
 static bool set_range(tool *t, void *place, const char *name, const char *value) {
     tool_demand *range = (tool_demand *)place;
-    const char *comma = strchr(value, ',');
-    bool bounded = comma && comma[1] && comma[1] != '=';
-    return (read_range(value, range) && range->min >= 0 && range->max >= 0 && (!bounded || range->max > 0)) ||
+    range->min = 0, range->max = HUGE_VAL;
+    return (read_range(value, range) && range->min >= 0 && range->max > 0) ||
            fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX");
 }
 
