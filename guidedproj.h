@@ -229,6 +229,11 @@
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
 
+   LISTS   `int32_t count, const int32_t *vertices` (or edges, or faces) are the elements that a call is about, in any
+     order. (0, NULL) means all of them, NULL with another count the first ones; a count of 0 with a list that is not
+     NULL means none (beware of empty vectors in C++, whose data may be NULL). Arrays beside a list have an entry for
+     each element, in the same order. In structs zeros are the defaults, and there an empty list is none.
+
    NO BOUND   is an infinity: -INFINITY for a lower bound, INFINITY for an upper bound and for seconds (<math.h>;
      HUGE_VAL is the same number). In options 0, the default, is no bound either. Bounds that are NaN, or that no number
      satisfies, are refused by name.
@@ -1262,8 +1267,8 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
    vertices with 4 or more faces; three planes always touch a cone. a_v are variables that start at the axis nearest to
    the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
-/* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
-   in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
+/* These edges (half-edges 2e, 2e + 1 of the mesh) have the lengths lengths[k] > 0, in the mesh's units:
+   (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight);
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
@@ -1281,8 +1286,8 @@ GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight);
 /* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Planar quads
    along a straight part all lie in one plane. */
 GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
-/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, a vector of any length > 0:
-   u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
+/* These edges are orthogonal to the planes with this normal, a vector of any length > 0: u'(v_j - v_i) = 0 and
+   w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight);
 /* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the
@@ -1305,11 +1310,11 @@ GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double a
 /* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. Lengths, areas and costs are
    never negative: min is -INFINITY (no bound) or >= 0, where 0 adds no rows either; max > 0 or INFINITY (no bound).
 
-   Lengths of these edges (as for gproj_add_lengths):
+   Lengths of these edges:
        (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
                                           double weight);
-/* Areas |a_k| of these faces (faces NULL: the first `count` ones), linearised anew in each iteration:
+/* Areas |a_k| of these faces, linearised anew in each iteration:
        (|a_k| - min) / (2 sqrt(min)) >= 0,    (max - |a_k|) / (2 sqrt(max)) >= 0. */
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight);
@@ -1345,10 +1350,10 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
 /* Sets a group's weight, decay and last iteration; {w, 1, INT32_MAX} keeps a wish on to the end. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
-/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says;
-   elements NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off,
-   1 on again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a
-   reference has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
+/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says) get
+   the weight weights[k] in 0..1e50, times the group's. 0 switches them off, 1 on again. Others stay as they are;
+   elements without rows in this group are passed over. So a closeness or a reference has a weight for each vertex, and
+   any constraint may hold for some elements only. Needs no new analysis. */
 GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
                                                const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
@@ -1455,8 +1460,8 @@ typedef struct gproj_supports {
    first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
-/* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
-   and NULL are all). These and the next two need gproj_add_equilibrium before. */
+/* Only compression, w >= 0, or only tension, w <= 0, in these edges. These and the next two need gproj_add_equilibrium
+   before. */
 GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The stress of these edges is bounded: min <= w l / A <= max, l the length, A = sections[k] > 0 (paper 3.1); NULL
@@ -18870,15 +18875,30 @@ GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t
         gproji_fail_memory(&s->error);
 }
 
-/* Refuses vertex numbers out of range. */
-GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
-                                               const int32_t *vertices) {
-    int32_t i;
-    for (i = 0; i < count; ++i) {
-        if (vertices[i] >= 0 && vertices[i] < form->mesh->vertex_count) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, vertices[i],
-                    "%s: there is no vertex %d (the mesh has %d, counted from 0)", name, vertices[i],
-                    form->mesh->vertex_count);
+/* The number of vertices, edges or faces; 0 for other places. */
+GPROJI_INTERNAL int32_t gproji_element_count(const gproj_mesh *mesh, gproj_place place) {
+    return place == GPROJ_PLACE_VERTEX ? mesh->vertex_count
+           : place == GPROJ_PLACE_EDGE ? mesh->edge_count
+           : place == GPROJ_PLACE_FACE ? mesh->face_count
+                                       : 0;
+}
+
+/* Reads a list of elements: without `elements` the first *count ones, or all for 0. Refuses elements that the mesh does
+   not have. */
+GPROJI_INTERNAL bool gproji_take_list(gproj_form *form, const char *name, gproj_place place, int32_t *count,
+                                      const int32_t *elements) {
+    int32_t have = gproji_element_count(form->mesh, place), i;
+    if (!elements && *count == 0) *count = have;
+    if (*count < 0 || (!elements && *count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the count is %d, not 0 to %d", name,
+                    *count, have);
+        return false;
+    }
+    for (i = 0; elements && i < *count; ++i) {
+        if (elements[i] >= 0 && elements[i] < have) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
+                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
+                    elements[i], have);
         return false;
     }
     return true;
@@ -18888,15 +18908,10 @@ GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *nam
 GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const char *name, int32_t count,
                                                     const int32_t *vertices) {
     gproji_part *part;
-    if (!gproji_form_ready(form)) return NULL;
-    if (count < 0 || (count > 0 && !vertices)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the list of %d vertices is no list",
-                    name, count);
-        return NULL;
-    }
-    if (!gproji_vertices_are_valid(form, name, count, vertices)) return NULL;
+    int32_t k;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, name, GPROJ_PLACE_VERTEX, &count, vertices)) return NULL;
     part = gproji_new_part(form, count);
-    if (part && count) memcpy(part->vertex, vertices, (size_t)count * sizeof *vertices);
+    for (k = 0; part && k < count; ++k) part->vertex[k] = vertices ? vertices[k] : k;
     return part;
 }
 
@@ -18982,11 +18997,11 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight) {
     gproji_part *part = gproji_new_vertex_part(form, "targets", count, vertices);
-    if (part && count > 0 && !positions) {
+    if (part && part->count > 0 && !positions) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
         return -1;
     }
-    if (part && gproji_check_positions(count, positions, "target", &form->error)) return -1;
+    if (part && gproji_check_positions(part->count, positions, "target", &form->error)) return -1;
     return gproji_add_points(form, part, "targets", GPROJ_CONSTRAINT, positions, weight);
 }
 
@@ -19566,10 +19581,8 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
         return gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
                            "element weights: there is no group %d (the form has %d)", group, form->system->group_count);
     info = gproj_system_group_info(form->system, group);
-    have = info.place == GPROJ_PLACE_VERTEX ? form->mesh->vertex_count
-           : info.place == GPROJ_PLACE_EDGE ? form->mesh->edge_count
-           : info.place == GPROJ_PLACE_FACE ? form->mesh->face_count
-                                            : 0;
+    have = gproji_element_count(form->mesh, info.place);
+    if (!elements && count == 0) count = have;
     if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "element weights: %d of the %d elements of group '%s', or no weights", count, have,
@@ -19607,29 +19620,6 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists with elements (edges, faces) that the mesh does not have: there are `have`. */
-GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
-                                               int32_t count, const int32_t *elements) {
-    const char *word = gproji_place_word(place);
-    int32_t i;
-    if (count < 0 || (!elements && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d %ss of %d", name, count, word,
-                    have);
-        return false;
-    }
-    for (i = 0; elements && i < count; ++i) {
-        if (elements[i] >= 0 && elements[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
-                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, word, elements[i], have);
-        return false;
-    }
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
-    return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
-}
-
 /* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
     int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
@@ -19650,7 +19640,7 @@ GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t ed
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight) {
     int32_t group, k;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "lengths", count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, "lengths", GPROJ_PLACE_EDGE, &count, edges)) return -1;
     group = gproji_new_group(form, "lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
@@ -19670,7 +19660,8 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
     int32_t group, common, k;
     double mean = 0;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "equal lengths", count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, "equal lengths", GPROJ_PLACE_EDGE, &count, edges))
+        return -1;
     for (k = 0; k < count; ++k) mean += gproji_original_length(form, edges ? edges[k] : k) / count;
     common = gproj_system_add_variables(form->system, 1, 1, &mean);
     group = gproji_new_group(form, "equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, weight, NULL, NULL);
@@ -19862,7 +19853,8 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     static const double none[3] = {0, 0, 0};
     double n[3] = {0, 0, 0}, across[2][3];
     int32_t group, i, k, c;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "orthogonal edges", count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
+        return -1;
     if (normal) gproji_copy3(normal, n);
     if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -20229,7 +20221,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
     static const char name[] = "length bounds";
     double bound[2];
     int32_t group, k, side;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, name, GPROJ_PLACE_EDGE, &count, edges)) return -1;
     if (!gproji_take_bounds(form, name, min, max, form->scale, bound)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
     for (k = 0; k < count; ++k) {
@@ -20268,9 +20260,7 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
-    if (!gproji_form_ready(form) ||
-        !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces))
-        return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, name, GPROJ_PLACE_FACE, &count, faces)) return -1;
     part = gproji_new_part(form, count);
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->bound)) return -1;
     term = gproji_take_terms(form);
@@ -20655,17 +20645,17 @@ GPROJI_INTERNAL double *gproji_copy_numbers(gproji_pool *pool, const double *num
 /* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
 GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
                                                  const gproj_supports *supports) {
-    int32_t e, v;
+    int32_t e, v, count = supports ? supports->count : 0;
     if (form->statics) {
         gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "the form has its equilibrium already: set its schedule, or make a new form");
         return false;
     }
-    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
+    if (!supports || count < 0 || (count > 0 && !supports->vertex)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
         return false;
     }
-    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex)) return false;
+    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
         !gproji_is_finite(loads->snow)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -20787,7 +20777,7 @@ static const char gproji_compression_name[] = "compression", gproji_tension_name
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const char *name, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
-    if (!gproji_has_statics(form, name) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
+    if (!gproji_has_statics(form, name) || !gproji_take_list(form, name, GPROJ_PLACE_EDGE, &count, edges)) return -1;
     group = gproji_new_group(form, name, GPROJ_BOUND, GPROJ_PLACE_EDGE, weight, NULL, NULL);
     if (group >= 0) form->system->group[group].lazy = true; /* a good step is not found again for them */
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
@@ -20847,7 +20837,8 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     gproji_part *part;
     gproj_term term[6];
     int32_t k, side;
-    if (!gproji_has_statics(form, "stress bounds") || !gproji_edges_are_valid(form, "stress bounds", count, edges))
+    if (!gproji_has_statics(form, "stress bounds") ||
+        !gproji_take_list(form, "stress bounds", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (!gproji_bounds_are_valid(form, "stress bounds", min, max)) return -1;
     for (k = 0; sections && k < count; ++k) {

@@ -268,7 +268,8 @@ GPROJT_TEST(elements_are_switched) {
     GPROJT_REQUIRE(kept && weights);
     for (e = 0; e < mesh->edge_count; ++e) kept[e] = gprojt_edge_length(mesh, e), weights[e] = e % 2;
     gprojt_shake(mesh, 0.02, 5);
-    GPROJT_CHECK(gproj_set_element_weights(form, group, mesh->edge_count, NULL, weights) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_element_weights(form, group, 0, &e, NULL) == GPROJ_OK);      /* none */
+    GPROJT_CHECK(gproj_set_element_weights(form, group, 0, NULL, weights) == GPROJ_OK); /* all */
     result = gproj_solve(form, 20, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
     for (e = 0; e < mesh->edge_count; ++e) {

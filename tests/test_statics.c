@@ -1439,13 +1439,13 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     gproj_form *form;
     gproj_result result;
     bool whole;
-    int32_t i;
+    int32_t i, none = 0;
     for (i = 0; i < mesh->vertex_count; ++i) f[3 * i + 2] = -1;
     for (i = 0; i < mesh->edge_count; ++i) density[i] = 1;
     loads.edge_density = density, loads.point_load = f, loads.snow = 1, loads.area_load = 1;
     form = gprojt_pinned_form(mesh, host, &loads);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
-    gproj_add_tension(form, 0, NULL, 1);
+    gproj_add_tension(form, 0, &none, 1);
     gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
     gproj_add_force_fairness(form, 0.1);
     gproj_find_forces(form, w, NULL);
