@@ -351,8 +351,8 @@ typedef struct gproj_memory {
 
    Functions that create an object take a `gproj_error *` (may be NULL) and return NULL on failure. Objects that
    are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
-   return -1, so one check at the end is enough. "Not converged" and "not positive definite" are outcomes, not
-   errors. */
+   return -1, so one check at the end is enough. Questions to such an object, which take a `gproj_error *` of their
+   own, leave it as it was if they are refused. "Not converged" and "not positive definite" are outcomes, not errors. */
 typedef enum gproj_code {
     GPROJ_OK,
     GPROJ_ERROR_MEMORY,
@@ -827,7 +827,8 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
 typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 /* Writes the mesh with vertices, faces and corners in their order and numbers that read back to the same bits. OFF has
    no polylines. */
-GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user,
+                                      gproj_error *error);
 
 #ifndef GPROJ_NO_STDIO
 /* Reads a file; the format by the name's ending, or by the first word if that is neither .obj nor .off. Reads at most 1
@@ -1222,7 +1223,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
-   positions that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
+   positions that are not finite or beyond 1e70, here, at each solve, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1406,13 +1407,13 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 /* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as
    gproj_solve_is_on there is more to do.
 
-       gproj_solve_begin(form, 20, NULL);
+       gproj_solve_begin(form, 20, NULL, NULL);
        while (gproj_solve_is_on(form)) {
            result = gproj_solve_advance(form, 0.01); // by the host's clock; 0 seconds: one iteration
            draw(mesh);
        }
 
-   gproj_solve_begin loads the positions and takes no step; false: it was refused, and gproj_solve_advance says why.
+   gproj_solve_begin loads the positions and takes no step; false: it was refused, see `error` (may be NULL).
    gproj_solve_advance takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and
    at least one; 0 seconds: one, and INFINITY: all that are left, without a clock. It writes the positions and returns
    the state of the solve: GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations,
@@ -1421,7 +1422,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin.
    If groups or rows were added in between it fails. After a failure, such as seconds without a clock in the host, or an
    error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
-GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
+                                 gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
 GPROJ_API void gproj_solve_stop(gproj_form *form);
@@ -1471,29 +1473,33 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
 /* A wish: opposite edges in each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
-/* The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
-GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
+/* Forces and loads as they are, and forces as a start. `error` may be NULL; a refused call changes nothing, and the
+   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers and
+   positions that are not finite, _MEMORY, or the form's error.
+
+   The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
 /* Sets force densities, edge_count numbers, as the start for the next solve; NULL: the solve finds a start. */
-GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error);
 /* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
-GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error);
 /* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
-GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error);
 
 /* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
    numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
    gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
    unbalanced force at each vertex, over the mean load. Changes nothing. */
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error);
 /* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
    gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
    of the vertices it is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces do w_ij (v_i -
    v_j)'(d_i - d_j) >= 0, never the opposite. It holds for these positions only; others may be balanced. d is 0, but for
    rounding, if forces are found. */
-GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements, gproj_error *error);
 
 typedef struct gproj_forces {
     double residual; /* largest |sum_j w_ij (v_i - v_j) + f_i| over vertices without support, over the largest |f_i| */
@@ -1505,8 +1511,8 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* Measures the mesh as it is, with the forces from the last solve. */
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
+/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`): zeros, residual_vertex -1. */
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-drag   Dragging: a form follows one or several handles at screen rate, and constraints go on holding.
@@ -13502,10 +13508,18 @@ GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_forma
     return writer.failed ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user) {
-    if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF)) return GPROJ_ERROR_ARGUMENT;
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", NULL)) return GPROJ_ERROR_NUMBER;
-    return gproji_write_mesh(mesh, format, write, user);
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user,
+                                      gproj_error *error) {
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF))
+        return gproji_fail(
+            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+            "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (code) return code;
+    if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "write: the function to write with has stopped");
 }
 
 /* -- files -- */
@@ -18728,15 +18742,15 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
 
 /* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would
    not be, in the mesh's units or in the form's. */
-GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
+GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_error *error) {
     int32_t i, k;
-    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
+    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", error)) return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
         for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
         if (k == 3) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+        gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                     "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
         return false;
     }
@@ -18762,7 +18776,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     form->system = gproj_system_create(&form->host);
     if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
         return gproji_fail_memory(&form->error);
-    if (!gproji_positions_are_finite(form)) return form->error.code;
+    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code;
     /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
        digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
@@ -18777,7 +18791,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     }
     edge = gproj_mesh_mean_edge_length(mesh);
     form->scale = edge > 1e-305 ? 1 / edge : 1;
-    if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
+    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
@@ -20762,13 +20776,26 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
 
 /* -- bounds and fairness of forces -- */
 
+/* Refuses forms without equilibrium. */
+GPROJI_INTERNAL gproj_code gproji_need_statics(const gproj_form *form, const char *name, gproj_error *error) {
+    if (form->statics) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                       "%s: there are no forces yet: call gproj_add_equilibrium before", name);
+}
+
+/* Begins a question to a form, with its array: refuses without them, and after an error of the form. */
+GPROJI_INTERNAL gproj_code gproji_begin_question(const gproj_form *form, const char *name, bool has_array,
+                                                 gproj_error *error) {
+    gproji_error_clear(error);
+    if (!form || !has_array)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: there is no %s", name,
+                           form ? "array for it" : "form");
+    return gproji_form_ready(form) ? GPROJ_OK : gproji_pass_on(error, gproj_form_error(form));
+}
+
 /* Refuses a call that needs equilibrium before. */
 GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
-    if (!gproji_form_ready(form)) return false;
-    if (!form->statics)
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "%s: there are no forces yet: call gproj_add_equilibrium before", name);
-    return form->statics != NULL;
+    return gproji_form_ready(form) && gproji_need_statics(form, name, &form->error) == GPROJ_OK;
 }
 
 static const char gproji_compression_name[] = "compression", gproji_tension_name[] = "tension";
@@ -20954,11 +20981,13 @@ typedef struct gproji_balance {
     double *load;  /* 3 numbers a vertex */
     double *force; /* the solution */
     bool opposite; /* bounds with the other sign */
+    gproj_error *error; /* of the form, or of a question */
 } gproji_balance;
 
-GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
+GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, gproji_balance *p) {
     int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
+    p->error = error;
     gproji_pool_start(&p->pool, &form->own);
     p->start = (int64_t *)gproji_pool_take(&p->pool, edges + 1, sizeof *p->start);
     p->row = (int32_t *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->row);
@@ -20970,7 +20999,7 @@ GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
     p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
     if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
     gproji_pool_give_all(&p->pool);
-    gproji_fail_memory(&form->error);
+    gproji_fail_memory(error);
     return false;
 }
 
@@ -20992,7 +21021,7 @@ GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units unit
     gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
-    gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+    gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                 "equilibrium: the loads are too large, their squares overflow");
     return -1;
 }
@@ -21044,7 +21073,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     problem.lower = p->lower, problem.upper = p->upper, problem.damping = damping;
     gproji_error_clear(&error);
     if (gproj_solve_least_squares(&problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
-        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+        gproji_pass_on(p->error, &error);
         return false;
     }
     for (e = 0; e < mesh->edge_count; ++e) p->force[e] = s->force[e] >= 0 ? p->force[e] + mean : 0;
@@ -21073,13 +21102,14 @@ GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, 
 }
 
 /* Finds the best forces for the mesh as it is, and the loads that they leave: any of the arrays may be NULL. */
-GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left) {
+GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left,
+                                         gproj_error *error) {
     gproji_balance p;
     double *x, mean;
     int32_t v, e;
-    if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
-        !gproji_take_balance(form, &p))
-        return gproj_form_error(form)->code;
+    if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
+        !gproji_take_balance(form, error, &p))
+        return;
     /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
@@ -21094,15 +21124,22 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
     gproji_pool_give_all(&p.pool);
-    return gproj_form_error(form)->code;
 }
 
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
-    return form ? gproji_find_balance(form, densities, residuals, NULL) : GPROJ_ERROR_ARGUMENT;
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error) {
+    gproj_error own;
+    error = error ? error : &own;
+    if (gproji_begin_question(form, "find forces", true, error) == GPROJ_OK)
+        gproji_find_balance(form, densities, residuals, NULL, error);
+    return error->code;
 }
 
-GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements) {
-    return form && displacements ? gproji_find_balance(form, NULL, NULL, displacements) : GPROJ_ERROR_ARGUMENT;
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements, gproj_error *error) {
+    gproj_error own;
+    error = error ? error : &own;
+    if (gproji_begin_question(form, "find imbalance", displacements != NULL, error) == GPROJ_OK)
+        gproji_find_balance(form, NULL, NULL, displacements, error);
+    return error->code;
 }
 
 /* -- the start of a solve -- */
@@ -21226,7 +21263,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     int32_t e, row = 0;
     if (!s || s->group < 0 || !(form->system->group[s->group].schedule.weight > 0)) return;
     s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &p)) {
+    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
         /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
            wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
            solve for the nearest mesh forces are free. */
@@ -21252,10 +21289,10 @@ GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge
     return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
 }
 
-GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities) {
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
+    gproj_code code = gproji_begin_question(form, "get forces", densities != NULL, error);
     int32_t e;
-    if (!form || !densities) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    if (code) return code;
     for (e = 0; e < form->mesh->edge_count; ++e) densities[e] = gproji_force_density(form, e);
     return GPROJ_OK;
 }
@@ -21265,31 +21302,34 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
     return form->statics->force[edge];
 }
 
-GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
-    if (!form || !loads) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    if (!form->statics) return GPROJ_ERROR_STATE;
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error) {
+    gproj_code code = gproji_begin_question(form, "get loads", loads != NULL, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "get loads", error);
+    if (code) return code;
     gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
     return GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error) {
     gproji_statics *s;
     double *x, mean, of_loads, largest = 0, sum = 0;
     int32_t e, carrying = 0;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
+    gproj_code code = gproji_begin_question(form, "set forces", true, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "set forces", error);
+    if (code) return code;
     s = form->statics;
-    s->started = false;
     x = gproj_system_values(form->system);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
         if (s->force[e] >= 0) x[s->force[e]] = 0;
-    if (!densities) return GPROJ_OK;
+    if (!densities) {
+        s->started = false;
+        return GPROJ_OK;
+    }
     /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
         if (!gproji_is_finite(densities[e]))
-            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
                                "set forces: the density of edge %d is not a finite number", e);
         largest = gproji_fmax(largest, fabs(densities[e]));
     }
@@ -21302,7 +21342,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
     mean = carrying ? largest * sqrt(sum / carrying) : 0;
     /* 2. Forces that are next to nothing must not make the loads huge: then the scale is the density that balances the
        mean load at 45 degrees in a mean edge. */
-    gproj_get_loads(form, s->work);
+    gproj_get_loads(form, s->work, NULL);
     of_loads = gproji_mean_load(form, s->work) * form->scale;
     if (!gproji_is_finite(of_loads)) of_loads = 0;
     if (mean < gproji_least_force * of_loads) mean = of_loads;
@@ -21321,9 +21361,9 @@ GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) 
         gproji_add_force(form->mesh, form->mesh->position, e, gproji_force_density(form, e), out);
 }
 
-GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions) {
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c;
-    gproj_code code = gproj_get_loads(form, reactions);
+    gproj_code code = gproj_get_loads(form, reactions, error);
     if (code) return code;
     gproji_add_force_sums(form, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -21336,7 +21376,7 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
     return GPROJ_OK;
 }
 
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error) {
     gproj_forces m;
     const gproj_mesh *mesh;
     double largest = 0, *sum;
@@ -21344,7 +21384,9 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     bool first = true;
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
-    if (!form || !gproji_has_statics(form, "measure forces")) return m;
+    if (gproji_begin_question(form, "measure forces", true, error) ||
+        gproji_need_statics(form, "measure forces", error))
+        return m;
     mesh = form->mesh;
     /* 1. Edges: extremes and the load path, the sum of |force| length. */
     for (e = 0; e < mesh->edge_count; ++e) {
@@ -21362,7 +21404,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     }
     /* 2. Vertices: `sum` is the load, then load and forces together. */
     sum = form->statics->work;
-    gproj_get_loads(form, sum);
+    gproj_get_loads(form, sum, NULL);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];
@@ -21808,7 +21850,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     gproj_forces forces;
     if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
         return false;
-    forces = gproj_measure_forces(form);
+    forces = gproj_measure_forces(form, NULL);
     gproji_worst_balanced(form, vertex);
     gproji_format(others, sizeof others, "vertex ");
     if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
@@ -21900,7 +21942,7 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     int32_t *queue = s->queue, *seen = queue + mesh->vertex_count, v, k, found = -1;
-    gproj_get_loads(form, s->work);
+    gproj_get_loads(form, s->work, NULL);
     for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
     for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
         double sum[3] = {0, 0, 0}, size = 0;
@@ -22384,7 +22426,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
             gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
         return false;
     }
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_restart_gliding(form);
@@ -22572,10 +22614,19 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     return result;
 }
 
-GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
-    if (!gproji_form_is_open(form)) return false;
-    form->solve.finished = !gproji_begin_solve(form, iterations, options);
-    return form->solve.on;
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
+                                 gproj_error *error) {
+    gproji_error_clear(error);
+    if (gproji_form_is_open(form)) {
+        form->solve.finished = !gproji_begin_solve(form, iterations, options);
+        if (form->solve.on) return true;
+    }
+    if (gproji_form_ready(form))
+        gproji_fail(error, form->drag ? GPROJ_ERROR_STATE : GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s",
+                    form->solve.loop.result.message);
+    else
+        gproji_pass_on(error, gproj_form_error(form));
+    return false;
 }
 
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
@@ -23653,9 +23704,11 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
 GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handles *h,
                                              const gproj_drag_options *options, gproj_error *error) {
     const gproji_statics *statics;
+    gproj_error refused;
     int32_t k;
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
-        return gproji_pass_on(error, gproj_form_error(form));
+    gproji_error_clear(&refused);
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
+    if (!gproji_positions_are_finite(form, &refused)) return gproji_pass_on(error, &refused);
     statics = form->statics;
     if (form->drag || form->system->solving)
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,

@@ -68,7 +68,7 @@ static void handle(editor *e, const char *event) {
     int32_t vertex = HANDLE;
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     switch (event[0]) {
-    case 's': gproj_solve_begin(e->form, 30, NULL); break;
+    case 's': gproj_solve_begin(e->form, 30, NULL, NULL); break;
     case 'g': /* grab: stops a solve that is on */
         e->drag = gproj_drag_begin(e->form, &handles, NULL, NULL);
         follow_mouse(e, 0);

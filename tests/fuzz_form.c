@@ -226,14 +226,14 @@ static void gprojt_ask_forces(gprojt_case *c) {
     residuals = gprojt_random_numbers(c, n, 1);
     free(c->forces);
     c->forces = gprojt_random_numbers(c, c->mesh->edge_count, way & 4 ? 1e3 : 1);
-    if (way & 1 && gproj_find_forces(c->form, c->forces, residuals) == GPROJ_OK)
+    if (way & 1 && gproj_find_forces(c->form, c->forces, residuals, NULL) == GPROJ_OK)
         GPROJT_MUST(gprojt_all_finite(c->forces, c->mesh->edge_count) && gprojt_all_finite(residuals, n));
-    if (way & 2) gproj_set_forces(c->form, way & 8 ? NULL : c->forces);
-    if (gproj_get_reactions(c->form, loads) == GPROJ_OK) {
-        m = gproj_measure_forces(c->form);
+    if (way & 2) gproj_set_forces(c->form, way & 8 ? NULL : c->forces, NULL);
+    if (gproj_get_reactions(c->form, loads, NULL) == GPROJ_OK) {
+        m = gproj_measure_forces(c->form, NULL);
         GPROJT_MUST(gprojt_all_finite(loads, 3 * n) && m.residual >= 0 && m.residual < HUGE_VAL);
         GPROJT_MUST(m.load_path >= 0 && m.max_reaction >= 0 && m.min_force <= m.max_force);
-        GPROJT_MUST(gproj_get_forces(c->form, c->forces) == GPROJ_OK);
+        GPROJT_MUST(gproj_get_forces(c->form, c->forces, NULL) == GPROJ_OK);
         for (e = 0; e < c->mesh->edge_count; ++e) GPROJT_MUST(fabs(c->forces[e]) < HUGE_VAL);
     }
     free(loads), free(residuals);
@@ -246,7 +246,7 @@ static double gprojt_off_balance(const gprojt_case *c) {
            *size = (double *)calloc((size_t)n + 1, sizeof *size);
     double *w = (double *)malloc(((size_t)c->mesh->edge_count + 1) * sizeof *w), off = 0;
     if (!sum || !size || !w) abort();
-    GPROJT_MUST(gproj_get_loads(c->form, sum) == GPROJ_OK && gproj_get_forces(c->form, w) == GPROJ_OK);
+    GPROJT_MUST(gproj_get_loads(c->form, sum, NULL) == GPROJ_OK && gproj_get_forces(c->form, w, NULL) == GPROJ_OK);
     for (e = 0; e < n; ++e) size[e] = fabs(sum[e]);
     for (e = 0; e < c->mesh->edge_count; ++e) {
         for (k = 0; k < 3; ++k) {

@@ -53,7 +53,7 @@ static void gprojt_pull(const gprojt_stage *stage, gproj_drag *drag, int32_t v, 
 /* How far the mesh is from what must hold, by measures that know nothing of rows. */
 static double gprojt_measured_error(const gprojt_stage *stage, int design) {
     gproj_measures m = gproj_measure(stage->mesh, NULL, NULL);
-    if (design == GPROJT_STANDING) return gproj_measure_forces(stage->form).residual;
+    if (design == GPROJT_STANDING) return gproj_measure_forces(stage->form, NULL).residual;
     return design == GPROJT_CIRCULAR ? m.circularity_max : m.planarity_max;
 }
 
@@ -632,7 +632,7 @@ GPROJT_TEST(misused) {
     memcpy(p, stage.start + 3 * v, sizeof p);
     gprojt_check_refusal(stage.form, &handles, NULL, GPROJ_ERROR_STATE, "another drag is under way");
     GPROJT_CHECK(strstr(gproj_solve(stage.form, 5, NULL).message, "a drag is under way"));
-    GPROJT_CHECK(!gproj_solve_begin(stage.form, 5, NULL));
+    GPROJT_CHECK(!gproj_solve_begin(stage.form, 5, NULL, &error) && error.code == GPROJ_ERROR_STATE);
     GPROJT_CHECK(strstr(gproj_solve_advance(stage.form, 0).message, "a drag is under way"));
     GPROJT_CHECK(gproj_state_restore(stage.form, state, size, &error) == GPROJ_ERROR_STATE);
     GPROJT_CHECK(strstr(error.message, "a drag is under way"));

@@ -1624,8 +1624,12 @@ GPROJT_TEST(positions_beyond_all_measures) {
             GPROJT_CHECK(!gproj_drag_begin(form, &handles, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
         else
             GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_FAILED);
-        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
-        GPROJT_CHECK(strstr(gproj_form_error(form)->message, "beyond 1e70; use a larger unit of length") != NULL);
+        if (i == 4)
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        else
+            error = *gproj_form_error(form);
+        GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(strstr(error.message, "beyond 1e70; use a larger unit of length") != NULL);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
@@ -2096,7 +2100,7 @@ GPROJT_TEST(beyond_all_coordinates) {
         GPROJT_CHECK(result.outcome == GPROJ_STALLED && strstr(result.message, "beyond coordinates of 1e70"));
         GPROJT_CHECK(gprojt_unmoved(mesh, before) && gproj_form_error(form)->code == GPROJ_OK);
     }
-    GPROJT_CHECK(gproj_solve_begin(form, 60, NULL));
+    GPROJT_CHECK(gproj_solve_begin(form, 60, NULL, NULL));
     while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
     GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
     free(before);

@@ -456,7 +456,7 @@ GPROJT_TEST(a_callback_gives_a_first_weight) {
                            : kind == 1 ? gproj_add_volume(form, 1.02 * gproj_volume(mesh), 0)
                                        : gproj_add_fixed_corners(form, 0);
             waking.schedule = gprojt_schedule(kind == 0 ? 0.1 : 1, 1, kind == 0 ? 9 : 0);
-            GPROJT_CHECK(gproj_solve_begin(form, 20, &options));
+            GPROJT_CHECK(gproj_solve_begin(form, 20, &options, NULL));
             do {
                 result = gproj_solve_advance(form, 0);
                 GPROJT_CHECK(result.iterations > 2 || gprojt_is_on(form));
@@ -544,7 +544,7 @@ GPROJT_TEST(the_guard_waits_until_it_acts) {
     }
     GPROJT_CHECK(gproj_solve(forms[0], 20, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_guarded(forms[0]) > 0 && gprojt_guarded(forms[0]) < crooked[0]->face_count / 2);
-    GPROJT_REQUIRE(gproj_solve_begin(forms[1], 20, NULL));
+    GPROJT_REQUIRE(gproj_solve_begin(forms[1], 20, NULL, NULL));
     do result = gproj_solve_advance(forms[1], 0);
     while (gproj_solve_is_on(forms[1]));
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_guarded(forms[1]) == gprojt_guarded(forms[0]));
@@ -769,7 +769,7 @@ static void gprojt_check_restored(int past, int other_past, bool nearest) {
     int k;
     memset(&options, 0, sizeof options);
     options.nearest = nearest;
-    gproj_solve_begin(form, 20, &options);
+    gproj_solve_begin(form, 20, &options, NULL);
     for (k = 0; k < 3; ++k) gproj_solve_advance(form, 0);
     size = gproj_state_size(form);
     state = malloc(size);
@@ -817,7 +817,7 @@ GPROJT_TEST(frames_of_nearest_solves_may_be_disturbed) {
         options.nearest = true;
         gproj_add_planarity(form, 1);
         group = gproj_add_fairness(form, 0);
-        gproj_solve_begin(form, 40, &options);
+        gproj_solve_begin(form, 40, &options, NULL);
         do {
             result = gproj_solve_advance(form, 0);
             if (++frames != 5) continue;

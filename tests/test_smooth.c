@@ -225,7 +225,7 @@ GPROJT_TEST(frames_and_states) {
                  : kind == 1 ? gprojt_add_circular
                              : gprojt_add_carrying)(form[k], mesh[k]);
             }
-            GPROJT_CHECK(gproj_solve_begin(form[0], 60, &options));
+            GPROJT_CHECK(gproj_solve_begin(form[0], 60, &options, NULL));
             for (k = 0; k < at && gproj_solve_is_on(form[0]); ++k) gproj_solve_advance(form[0], 0);
             size = gproj_state_size(form[0]);
             state = (uint8_t *)malloc(size);
