@@ -793,6 +793,23 @@ typedef struct gproj_mesh {
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
+
+/* A mesh as other programs hold it; all arrays are copied. Zeros are the defaults. */
+typedef struct gproj_mesh_data {
+    int32_t vertex_count;
+    const double *position;            /* x y z of each vertex: either these */
+    const float *float_position;       /* or these */
+    size_t position_stride;            /* bytes from vertex to vertex, as in interleaved buffers; 0: x y z alone */
+    int32_t face_count;                /* 0: vertices alone */
+    const int32_t *face_degree;        /* corners of each face; NULL: `degree` for all */
+    int32_t degree;                    /* 3: triangles, 4: quads, ... */
+    const int32_t *face_vertex;        /* corners of all faces one after the other, from 0: either these, */
+    const uint16_t *short_face_vertex; /* or these; uint32_t may be cast to int32_t */
+} gproj_mesh_data;
+
+/* Builds the mesh that gproj_mesh_create builds from the same numbers. Refuses the same, naming the element, and arrays
+   that are missing or given in both types. */
+GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error);
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
@@ -12302,31 +12319,39 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     return GPROJ_OK;
 }
 
+/* Counts the corners of all faces, the entries of face_vertex. */
+GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t face_count, const int32_t *face_degree, int64_t *corners,
+                                                gproj_error *error) {
+    int32_t f;
+    *corners = 0;
+    for (f = 0; f < face_count; ++f) {
+        if (face_degree[f] < 3) {
+            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                               "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
+        }
+        *corners += face_degree[f];
+        if (*corners > GPROJI_CORNERS_MAX) {
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
+                               "the faces up to face %d have more than %d corners; split the mesh", f,
+                               (int32_t)GPROJI_CORNERS_MAX);
+        }
+    }
+    return GPROJ_OK;
+}
+
 /* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
 GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_soup *soup, gproj_error *error) {
     gproji_pool pool;
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    int32_t f;
     if (soup->vertex_count > GPROJI_VERTICES_MAX) {
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     }
-    /* Degrees come first, because they say how long face_vertex is. */
-    for (f = 0; f < soup->face_count; ++f) {
-        if (soup->face_degree[f] < 3) {
-            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
-        }
-        corners += soup->face_degree[f];
-        if (corners > GPROJI_CORNERS_MAX) {
-            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
-                               "the faces up to face %d have more than %d corners; split the mesh", f,
-                               (int32_t)GPROJI_CORNERS_MAX);
-        }
-    }
+    code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
+    if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
     if (code) return code;
     soup->corner_count = (int32_t)corners;
@@ -12411,6 +12436,12 @@ GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
     return object;
 }
 
+GPROJI_INTERNAL gproj_code gproji_check_counts(int32_t vertex_count, int32_t face_count, gproj_error *error) {
+    if (vertex_count >= 1 && face_count >= 0) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                       "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+}
+
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error) {
@@ -12418,11 +12449,7 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     gproji_mesh_object *object;
     gproj_code code;
     gproji_error_clear(error);
-    if (vertex_count < 1 || face_count < 0) {
-        gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
-        return NULL;
-    }
+    if (gproji_check_counts(vertex_count, face_count, error)) return NULL;
     if (!position || (face_count && (!face_degree || !face_vertex))) {
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "an array of the mesh is NULL");
         return NULL;
@@ -12434,6 +12461,70 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     code = gproji_mesh_build(object, &soup, error);
     if (!code) code = gproji_mesh_set_polylines(object, 0, NULL, NULL, error);
     return gproji_mesh_done(object, code);
+}
+
+/* Refuses arrays that are missing or given twice, and strides that are too short. */
+GPROJI_INTERNAL gproj_code gproji_check_data(const gproj_mesh_data *data, gproj_error *error) {
+    const char *wrong = NULL;
+    size_t least;
+    if (!data) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: there are none");
+    least = 3 * (data->position ? sizeof(double) : sizeof(float));
+    if ((data->position != NULL) == (data->float_position != NULL))
+        wrong = "either position or float_position is needed";
+    else if (data->position_stride && data->position_stride < least)
+        wrong = "position_stride is less than three numbers have";
+    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
+        wrong = "either face_vertex or short_face_vertex is needed";
+    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
+        wrong = "either face_degree or degree is needed";
+    if (wrong) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: %s", wrong);
+    return gproji_check_counts(data->vertex_count, data->face_count, error);
+}
+
+/* Copies the positions to 3 * vertex_count doubles. Strides may leave numbers at odd addresses: hence memcpy. */
+GPROJI_INTERNAL void gproji_copy_positions(const gproj_mesh_data *data, double *position) {
+    size_t size = data->position ? sizeof(double) : sizeof(float), stride = data->position_stride, v, k;
+    const char *from = data->position ? (const char *)data->position : (const char *)data->float_position;
+    if (stride == 0) stride = 3 * size;
+    for (v = 0; v < (size_t)data->vertex_count; ++v) {
+        for (k = 0; k < 3; ++k) {
+            const char *at = from + v * stride + k * size;
+            float number;
+            if (data->position) {
+                memcpy(&position[3 * v + k], at, size);
+                continue;
+            }
+            memcpy(&number, at, size);
+            position[3 * v + k] = number;
+        }
+    }
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproji_pool pool;
+    gproj_mesh *mesh = NULL;
+    double *position;
+    int32_t *degree, *vertex = NULL, f;
+    int64_t corners = 0, k;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (gproji_check_data(data, error)) return NULL;
+    gproji_pool_start(&pool, &heap);
+    position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, data->face_count, sizeof *degree);
+    for (f = 0; degree && f < data->face_count; ++f)
+        degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
+    code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
+    if (code == GPROJ_OK) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
+    if (code == GPROJ_OK && !(position && vertex)) code = gproji_fail_memory(error);
+    if (code == GPROJ_OK) {
+        gproji_copy_positions(data, position);
+        for (k = 0; k < corners; ++k) vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+        mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
+    }
+    gproji_pool_give_all(&pool);
+    return mesh;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
