@@ -182,7 +182,7 @@
        >>number         decimal text to binary and back
        >>memory         allocation with accounts
        >>error          one door for all failures
-       >>parallel       the host's threads
+       >>parallel       the host's threads, the default host
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
        >>dense          panels, update matrices, small matrices
@@ -218,7 +218,8 @@
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
      GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
-     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>, and in the implementation no <unistd.h>
+     GPROJ_NO_STDIO             no functions that open files and no default host; no <stdio.h>, and in the
+                                implementation no <unistd.h> and <time.h>
      GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler; without it, on x86-64 with
                                 gcc and clang, the processor is asked for AVX2 and AVX-512 (not with gcc for Windows:
                                 there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
@@ -337,6 +338,13 @@ typedef struct gproj_host {
     gproj_parallel parallel;
     gproj_clock clock;
 } gproj_host;
+
+#ifndef GPROJ_NO_STDIO
+/* A host to begin with: malloc, one thread, and a clock. That is CLOCK_MONOTONIC if <time.h> shows it (not in strict
+   modes such as -std=c99), else clock(): real time on Windows, elsewhere the processor time of all threads, and none in
+   strict modes on WASI. */
+GPROJ_API gproj_host gproj_default_host(void);
+#endif
 
 /* The bytes that an object holds and has held at most, and the allocations and reallocations it has asked for so
    far. */
@@ -1684,6 +1692,16 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_FILES 0
 #endif
 #endif
+#include <time.h>
+/* The clock of the default host: 2: clock_gettime, 1: clock, 0: none. Windows has clock_gettime in a library of its
+   own; strict modes hide it, on WASI without hiding the macro. */
+#if defined(__wasi__) && defined(__STRICT_ANSI__)
+#define GPROJI_CLOCK 0
+#elif defined(CLOCK_MONOTONIC) && !defined(_WIN32)
+#define GPROJI_CLOCK 2
+#else
+#define GPROJI_CLOCK 1
+#endif
 #if GPROJI_FILES
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -2541,7 +2559,7 @@ GPROJI_NOINLINE void gproji_error_clear(gproj_error *error) {
 }
 
 /* ============================================================================================================
-   >>parallel   The host's threads. Uses platform. */
+   >>parallel   The host's threads, and the default host. Uses platform. */
 
 GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, gproj_task task, void *data) {
     int32_t i;
@@ -2556,6 +2574,31 @@ GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, g
 GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_t chunk) {
     return (int32_t)((int64_t)items * chunk / chunks);
 }
+
+#ifndef GPROJ_NO_STDIO
+#if GPROJI_CLOCK
+GPROJI_INTERNAL double gproji_default_now(void *user) {
+#if GPROJI_CLOCK == 2
+    struct timespec time;
+    (void)user;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+#else
+    (void)user;
+    return (double)clock() / (double)CLOCKS_PER_SEC;
+#endif
+}
+#endif
+
+GPROJ_API gproj_host gproj_default_host(void) {
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+#if GPROJI_CLOCK
+    host.clock.now = gproji_default_now;
+#endif
+    return host;
+}
+#endif
 
 /* ============================================================================================================
    >>vector   3-vectors, points in the plane, sums. Uses platform. */

@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     SIDE = 24,
@@ -33,11 +32,6 @@ typedef struct editor {
     size_t size[STATES];
     int now, last; /* of the states */
 } editor;
-
-static double seconds(void *user) {
-    (void)user;
-    return (double)clock() / CLOCKS_PER_SEC;
-}
 
 /* Makes the present the next state; what could have been redone is forgotten. */
 static void remember(editor *e) {
@@ -92,7 +86,7 @@ static void roof(int32_t i, int32_t j, double p[3]) {
 int main(void) {
     static const char *const script[] = {"solve", "wait", "grab", "move",   "move", "move", "drop",
                                          "grab",  "move", "move", "escape", "undo", "redo", NULL};
-    gproj_host host = {{NULL, NULL, NULL, NULL, 0}, {NULL, NULL}, {seconds, NULL}};
+    gproj_host host = gproj_default_host(); /* with a clock, for the frames */
     editor e = {NULL, NULL, NULL, {NULL}, {0}, 0, 0};
     int32_t i;
     const char *const *next = script;
