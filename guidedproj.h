@@ -69,7 +69,7 @@
      verdict          the outcome of a solve and a sentence about it
      spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
      cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
-     frame            the iterations of a solve between two pictures (gproj_step)
+     frame            the iterations of a solve between two pictures (gproj_solve_advance)
    Residuals of a form are in mean edge lengths.
 
    HOW IT WORKS   Guided projection (Tang et al. 2014) is Newton's method for more unknowns than equations.
@@ -178,7 +178,7 @@
        >>number         decimal text to binary and back
        >>memory         allocation with accounts
        >>error          one door for all failures
-       >>parallel       the host's threads
+       >>parallel       the host's threads, the default host
        >>vector         3-vectors
        >>kernels        tiles in registers, for each kind of vector unit
        >>dense          panels, update matrices, small matrices
@@ -215,7 +215,8 @@
    SWITCHES (define before the #include)
      GUIDEDPROJ_IMPLEMENTATION  in exactly one file: also compile the implementation
      GPROJ_STATIC               all functions are static, with the implementation, wherever it is defined
-     GPROJ_NO_STDIO             no functions that open files, no <stdio.h>, and in the implementation no <unistd.h>
+     GPROJ_NO_STDIO             no functions that open files and no default host; no <stdio.h>, and in the
+                                implementation no <unistd.h> and <time.h>
      GPROJ_NO_SIMD              plain scalar kernels, no vector extensions of the compiler; without it, on x86-64 with
                                 gcc and clang, the processor is asked for AVX2 and AVX-512 (not with gcc for Windows:
                                 there, as for other processors, the compiler's options decide, such as -mavx2 -mfma)
@@ -225,6 +226,15 @@
                                 __declspec(dllexport) where a shared library exports them; not in static mode
 
    OPTIONS   are structs whose zeros are the defaults: write `gproj_solve_options options = {0};` in C, `= {}` in C++.
+
+   LISTS   `int32_t count, const int32_t *vertices` (or edges, or faces) are the elements that a call is about, in any
+     order. (0, NULL) means all of them, NULL with another count the first ones; a count of 0 with a list that is not
+     NULL means none (beware of empty vectors in C++, whose data may be NULL). Arrays beside a list have an entry for
+     each element, in the same order. In structs zeros are the defaults, and there an empty list is none.
+
+   NO BOUND   is an infinity: -INFINITY for a lower bound, INFINITY for an upper bound and for seconds (<math.h>;
+     HUGE_VAL is the same number). In options 0, the default, is no bound either. Bounds that are NaN, or that no number
+     satisfies, are refused by name.
 
    MEMORY   Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
      back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
@@ -326,6 +336,13 @@ typedef struct gproj_host {
     gproj_clock clock;
 } gproj_host;
 
+#ifndef GPROJ_NO_STDIO
+/* A host to begin with: malloc, one thread, and a clock. That is CLOCK_MONOTONIC if <time.h> shows it (not in strict
+   modes such as -std=c99), else clock(): real time on Windows, elsewhere the processor time of all threads, and none in
+   strict modes on WASI. */
+GPROJ_API gproj_host gproj_default_host(void);
+#endif
+
 /* The bytes that an object holds and has held at most, and the allocations and reallocations it has asked for so
    far. */
 typedef struct gproj_memory {
@@ -339,8 +356,8 @@ typedef struct gproj_memory {
 
    Functions that create an object take a `gproj_error *` (may be NULL) and return NULL on failure. Objects that
    are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
-   return -1, so one check at the end is enough. "Not converged" and "not positive definite" are outcomes, not
-   errors. */
+   return -1, so one check at the end is enough. Questions to such an object, which take a `gproj_error *` of their
+   own, leave it as it was if they are refused. "Not converged" and "not positive definite" are outcomes, not errors. */
 typedef enum gproj_code {
     GPROJ_OK,
     GPROJ_ERROR_MEMORY,
@@ -487,8 +504,8 @@ typedef struct gproj_least_squares {
     const int32_t *row;   /* of each entry, in any order; entries at the same place are summed */
     const double *value;  /* of each entry; |value| <= 1e50 */
     const double *b;      /* rows; |b| <= 1e50 */
-    const double *lower;  /* columns; NULL: none. -inf, or less than -1e50: x may be as small as it likes */
-    const double *upper;  /* columns; NULL: none. lower = upper fixes a variable */
+    const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
+    const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
     double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
 } gproj_least_squares;
 
@@ -664,7 +681,7 @@ typedef struct gproj_solve_options {
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
                            steps fall short near the end) */
-    double time_budget; /* seconds by the host's clock; 0 means none */
+    double time_budget; /* seconds by the host's clock; 0 or INFINITY: no bound */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
     bool skip_damping;   /* take every full step, whatever it does (the paper's plain iteration) */
@@ -800,6 +817,23 @@ typedef struct gproj_mesh {
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
+
+/* A mesh as other programs hold it; all arrays are copied. Zeros are the defaults. */
+typedef struct gproj_mesh_data {
+    int32_t vertex_count;
+    const double *position;            /* x y z of each vertex: either these */
+    const float *float_position;       /* or these */
+    size_t position_stride;            /* bytes from vertex to vertex, as in interleaved buffers; 0: x y z alone */
+    int32_t face_count;                /* 0: vertices alone */
+    const int32_t *face_degree;        /* corners of each face; NULL: `degree` for all */
+    int32_t degree;                    /* 3: triangles, 4: quads, ... */
+    const int32_t *face_vertex;        /* corners of all faces one after the other, from 0: either these, */
+    const uint16_t *short_face_vertex; /* or these; uint32_t may be cast to int32_t */
+} gproj_mesh_data;
+
+/* Builds the mesh that gproj_mesh_create builds from the same numbers. Refuses the same, naming the element, and arrays
+   that are missing or given in both types. */
+GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error);
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh);
 GPROJ_API gproj_memory gproj_mesh_memory(const gproj_mesh *mesh);
@@ -834,7 +868,8 @@ GPROJ_API gproj_mesh *gproj_mesh_read(const char *text, size_t size, gproj_forma
 typedef bool (*gproj_write)(void *user, const char *text, size_t size);
 /* Writes the mesh with vertices, faces and corners in their order and numbers that read back to the same bits. OFF has
    no polylines. */
-GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user);
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user,
+                                      gproj_error *error);
 
 #ifndef GPROJ_NO_STDIO
 /* Reads a file; the format by the name's ending, or by the first word if that is neither .obj nor .off. Reads at most 1
@@ -1229,7 +1264,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
-   positions that are not finite or beyond 1e70, here, at each solve and drag, and as targets. */
+   positions that are not finite or beyond 1e70, here, at each solve, and as targets. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1274,8 +1309,8 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
    vertices with 4 or more faces; three planes always touch a cone. a_v are variables that start at the axis nearest to
    the bisecting planes. Needs the normals of planar faces: call gproj_add_planarity before. */
 GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight);
-/* These edges (half-edges 2e, 2e + 1 of the mesh; edges NULL: the first `count` ones) have the lengths lengths[k] > 0,
-   in the mesh's units: (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
+/* These edges (half-edges 2e, 2e + 1 of the mesh) have the lengths lengths[k] > 0, in the mesh's units:
+   (|v_i - v_j|^2 - l^2) / (2 l) = 0. NULL lengths: those of gproj_form_create. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight);
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
@@ -1296,8 +1331,8 @@ GPROJ_API int32_t gproj_add_planar_boundary(gproj_form *form, double weight);
 /* Each part of the boundary from corner to corner is straight. Refuses loops with fewer than 3 corners. Planar quads
    along a straight part all lie in one plane. */
 GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight);
-/* These edges (NULL: the first `count` ones) are orthogonal to the planes with this normal, a vector of any length > 0:
-   u'(v_j - v_i) = 0 and w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
+/* These edges are orthogonal to the planes with this normal, a vector of any length > 0: u'(v_j - v_i) = 0 and
+   w'(v_j - v_i) = 0 with u, w orthogonal to the normal. */
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight);
 /* At every boundary vertex b with one inner edge bt, corners apart, that edge is orthogonal to the boundary, to the
@@ -1317,14 +1352,14 @@ GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double wei
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight);
 
-/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. A min of 0 means no lower
-   bound, a max of 0 or INFINITY no upper one.
+/* Bounds (GPROJ_BOUND): something is at least min and at most max, in the mesh's units. Lengths, areas and costs are
+   never negative: min is -INFINITY (no bound) or >= 0, where 0 adds no rows either; max > 0 or INFINITY (no bound).
 
-   Lengths of these edges (as for gproj_add_lengths):
+   Lengths of these edges:
        (|v_i - v_j|^2 - min^2) / (2 min) >= 0,    (max^2 - |v_i - v_j|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
                                           double weight);
-/* Areas |a_k| of these faces (faces NULL: the first `count` ones), linearised anew in each iteration:
+/* Areas |a_k| of these faces, linearised anew in each iteration:
        (|a_k| - min) / (2 sqrt(min)) >= 0,    (max - |a_k|) / (2 sqrt(max)) >= 0. */
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight);
@@ -1381,8 +1416,9 @@ typedef void (*gproj_start)(void *user, const gproj_mesh *mesh, int32_t first, i
    NULL. States keep them like the library's. */
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user);
-/* Reads such unknowns in the mesh's units. */
-GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values);
+/* Reads such unknowns in the mesh's units. `error` may be NULL; a refused call changes nothing. */
+GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values,
+                                             gproj_error *error);
 /* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
    In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Let phi be
    about a length in the mesh's units, and residuals and weights compare with those of the other constraints: of
@@ -1391,14 +1427,15 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
                                      double constant, int32_t element);
 /* What each element of the group's place lacks after a solve: the largest |phi| of its rows, of bounds the violation, in
    mean edge lengths; 0 without rows. per_element: a number for each vertex, edge or face of the mesh. */
-GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element);
+GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
+                                          gproj_error *error);
 
 /* Sets a group's weights: gproj_keep(w) keeps a wish on to the end, gproj_keep(0) switches any group off. */
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule);
-/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says;
-   elements NULL: the first `count` ones) get the weight weights[k] in 0..1e50, times the group's. 0 switches them off,
-   1 on again. Others stay as they are; elements without rows in this group are passed over. So a closeness or a
-   reference has a weight for each vertex, and any constraint may hold for some elements only. Needs no new analysis. */
+/* Sets weights for parts of a group: the rows of elements[k] (vertices, edges or faces, as the group's place says) get
+   the weight weights[k] in 0..1e50, times the group's. 0 switches them off, 1 on again. Others stay as they are;
+   elements without rows in this group are passed over. So a closeness or a reference has a weight for each vertex, and
+   any constraint may hold for some elements only. Needs no new analysis. */
 GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, int32_t count, const int32_t *elements,
                                                const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
@@ -1439,7 +1476,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
      are let go; gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps, up to
-     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_step).
+     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
+     (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -1447,28 +1485,29 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    face's area, and a step that would take most of a face's area is shortened. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
-/* A solve in frames, for programs that draw between iterations: begin once, step each frame, and as long as
-   gproj_step_is_on there is more to do.
+/* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as
+   gproj_solve_is_on there is more to do.
 
-       gproj_step_begin(form, 20, NULL);
-       while (gproj_step_is_on(form)) {
-           result = gproj_step(form, 0.01); // by the host's clock; 0 seconds: one iteration
+       gproj_solve_begin(form, 20, NULL, NULL);
+       while (gproj_solve_is_on(form)) {
+           result = gproj_solve_advance(form, 0.01); // by the host's clock; 0 seconds: one iteration
            draw(mesh);
        }
 
-   gproj_step_begin loads the positions and takes no step; false: it was refused, and gproj_step says why. gproj_step
-   takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and at least one; 0
-   seconds: one, without a clock. It writes the positions and returns the state of the solve: GPROJ_TIME_OUT while it is
-   on, then the verdict, which further calls repeat. Iterations, schedules and, in the end, the bytes are those of one
-   gproj_solve. Between two frames weights may be changed and targets moved; vertices are moved by targets, or before
-   another gproj_step_begin: positions are only written. gproj_step_stop ends it at the present positions; so do
-   gproj_solve, gproj_drag_begin and another gproj_step_begin. If groups or rows were added in between it fails. After a
-   failure, such as seconds without a clock in the host, or an error of the form, it is no longer on.
-   options->time_budget counts the seconds inside all steps. */
-GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
-GPROJ_API bool gproj_step_is_on(const gproj_form *form);
-GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds);
-GPROJ_API void gproj_step_stop(gproj_form *form);
+   gproj_solve_begin loads the positions and takes no step; false: it was refused, see `error` (may be NULL).
+   gproj_solve_advance takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and
+   at least one; 0 seconds: one, and INFINITY: all that are left, without a clock. It writes the positions and returns
+   the state of the solve: GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations,
+   schedules and, in the end, the bytes are those of one gproj_solve. Between two frames weights may be changed and
+   targets moved; vertices are moved by targets, or before another gproj_solve_begin: positions are only written.
+   gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin.
+   If groups or rows were added in between it fails. After a failure, such as seconds without a clock in the host, or an
+   error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
+                                 gproj_error *error);
+GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
+GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
+GPROJ_API void gproj_solve_stop(gproj_form *form);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-statics   Forces in the edges of a form: equilibrium, compression only, stresses, supports and reactions.
@@ -1504,40 +1543,44 @@ typedef struct gproj_supports {
    first. Later solves go on from the forces they find. */
 GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports,
                                         double weight);
-/* Only compression, w >= 0, or only tension, w <= 0, in these edges (edges NULL: the first `count` ones, so edge_count
-   and NULL are all). These and the next two need gproj_add_equilibrium before. */
+/* Only compression, w >= 0, or only tension, w <= 0, in these edges. These and the next two need gproj_add_equilibrium
+   before. */
 GPROJ_API int32_t gproj_add_compression(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The stress of these edges is bounded: min <= w l / A <= max, l the length, A = sections[k] > 0 (paper 3.1); NULL
-   sections: A = 1, bounds of the force. min = -INFINITY or max = INFINITY: no bound on that side. */
+   sections: A = 1, bounds of the force. */
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight);
 /* A wish: opposite edges in each quad carry the same force, l_ij w_ij - l_kl w_kl = 0 (paper 3.5). */
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
-/* The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
-GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities);
+/* Forces and loads as they are, and forces as a start. `error` may be NULL; a refused call changes nothing, and the
+   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers and
+   positions that are not finite, _MEMORY, or the form's error.
+
+   The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
 /* Sets force densities, edge_count numbers, as the start for the next solve; NULL: the solve finds a start. */
-GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities);
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error);
 /* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
-GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads);
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error);
 /* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
-GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions);
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error);
 
 /* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
    numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
    gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
    unbalanced force at each vertex, over the mean load. Changes nothing. */
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals);
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error);
 /* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
    gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
    of the vertices it is a proof (Farkas): the loads do the work sum f_i'd_i > 0, and allowed forces do w_ij (v_i -
    v_j)'(d_i - d_j) >= 0, never the opposite. It holds for these positions only; others may be balanced. d is 0, but for
    rounding, if forces are found. */
-GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements);
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements, gproj_error *error);
 
 typedef struct gproj_forces {
     double residual; /* largest |sum_j w_ij (v_i - v_j) + f_i| over vertices without support, over the largest |f_i| */
@@ -1549,8 +1592,8 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* Measures the mesh as it is, with the forces from the last solve. */
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form);
+/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`): zeros, residual_vertex -1. */
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-drag   Dragging: a form follows one or several handles at screen rate, and constraints go on holding.
@@ -1590,7 +1633,7 @@ typedef struct gproj_handles {
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
        anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
-       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -1642,10 +1685,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
-   (gproj_step). A restored form goes on as the saved one would have: to the bit on the same processor and build, if no
-   first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The state
-   lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the same
-   calls have made from the same mesh.
+   (gproj_solve_begin). A restored form goes on as the saved one would have: to the bit on the same processor and build,
+   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The
+   state lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the
+   same calls have made from the same mesh.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -1704,6 +1747,16 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #else
 #define GPROJI_FILES 0
 #endif
+#endif
+#include <time.h>
+/* The clock of the default host: 2: clock_gettime, 1: clock, 0: none. Windows has clock_gettime in a library of its
+   own; strict modes hide it, on WASI without hiding the macro. */
+#if defined(__wasi__) && defined(__STRICT_ANSI__)
+#define GPROJI_CLOCK 0
+#elif defined(CLOCK_MONOTONIC) && !defined(_WIN32)
+#define GPROJI_CLOCK 2
+#else
+#define GPROJI_CLOCK 1
 #endif
 #if GPROJI_FILES
 #include <fcntl.h>
@@ -2599,7 +2652,7 @@ GPROJI_NOINLINE void *gproji_begin_object(const gproj_host *host, size_t size, g
 }
 
 /* ============================================================================================================
-   >>parallel   The host's threads. Uses platform. */
+   >>parallel   The host's threads, and the default host. Uses platform. */
 
 /* Runs `count` tasks on the host's threads, or on this one alone. parallel may be NULL. */
 GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, gproj_task task, void *data) {
@@ -2615,6 +2668,31 @@ GPROJI_INTERNAL void gproji_for(const gproj_parallel *parallel, int32_t count, g
 GPROJI_INTERNAL int32_t gproji_chunk_start(int32_t items, int32_t chunks, int32_t chunk) {
     return (int32_t)((int64_t)items * chunk / chunks);
 }
+
+#ifndef GPROJ_NO_STDIO
+#if GPROJI_CLOCK
+GPROJI_INTERNAL double gproji_default_now(void *user) {
+#if GPROJI_CLOCK == 2
+    struct timespec time;
+    (void)user;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+#else
+    (void)user;
+    return (double)clock() / (double)CLOCKS_PER_SEC;
+#endif
+}
+#endif
+
+GPROJ_API gproj_host gproj_default_host(void) {
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+#if GPROJI_CLOCK
+    host.clock.now = gproji_default_now;
+#endif
+    return host;
+}
+#endif
 
 /* ============================================================================================================
    >>vector   3-vectors, points in the plane, sums. Uses platform. */
@@ -6829,16 +6907,24 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return GPROJ_OK;
 }
 
-/* Reads a bound as a finite number: `none`, -NONE or NONE, if there is no bound. False for NaN and for a bound on the
-   wrong side. Infinities are told by their bits: comparisons may be compiled for finite numbers only. */
-GPROJI_INTERNAL bool gproji_squares_bound(const double *bound, int32_t j, double none, double *out) {
+/* Reads a bound as a finite number: `none`, -NONE or NONE, for NULL and the infinity on that side. Fails for NaN, the
+   other infinity, and numbers beyond 1e50. Infinities are told by their bits: comparisons may be compiled for finite
+   numbers only. */
+GPROJI_INTERNAL bool gproji_squares_bound(gproji_squares *s, const char *name, const double *bound, int32_t j,
+                                          double none, double *out) {
     uint64_t bits;
     *out = none;
     if (!bound) return true;
     memcpy(&bits, &bound[j], sizeof bits);
-    if (!gproji_is_finite(bound[j])) return (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0);
-    if (fabs(bound[j]) <= GPROJI_SQUARES_HUGE) *out = bound[j];
-    return *out == bound[j] || (bound[j] < 0) == (none < 0);
+    if (!gproji_is_finite(bound[j]) && (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0)) return true;
+    if (gproji_squares_finite(bound[j])) {
+        *out = bound[j];
+        return true;
+    }
+    s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                          "least squares: %s[%d] is %g, but a bound is a number up to 1e50, or %sINFINITY for none",
+                          name, j, bound[j], none < 0 ? "-" : "");
+    return false;
 }
 
 /* Takes the arrays whose sizes are known, and reads the bounds. */
@@ -6870,11 +6956,13 @@ GPROJI_INTERNAL void gproji_squares_begin(gproji_squares *s) {
         return;
     }
     for (j = 0; j < n && s->code == GPROJ_OK; ++j) {
-        bool good = gproji_squares_bound(p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
-        good = gproji_squares_bound(p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]) && good;
-        if (!good || s->lower[j] > s->upper[j])
-            s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
-                                  "least squares: variable %d has no number between its bounds", j);
+        if (!gproji_squares_bound(s, "lower", p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]) ||
+            !gproji_squares_bound(s, "upper", p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]))
+            return;
+        if (s->lower[j] > s->upper[j])
+            s->code =
+                gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                            "least squares: lower[%d] = %g is above upper[%d] = %g", j, s->lower[j], j, s->upper[j]);
         s->state[j] = s->lower[j] < s->upper[j] ? GPROJI_VARIABLE_FREE : GPROJI_VARIABLE_FIXED;
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (s->lower[j] > -GPROJI_SQUARES_NONE) in->variable[in->pairs] = j, in->sign[in->pairs++] = 1;
@@ -12006,6 +12094,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     memset(loop, 0, sizeof *loop);
     loop->system = s;
     if (options) loop->options = *options;
+    if (loop->options.time_budget > DBL_MAX) loop->options.time_budget = 0;
     loop->iterations = iterations;
     loop->frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
@@ -12821,31 +12910,39 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
+/* Counts the corners of all faces, the entries of face_vertex. */
+GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t face_count, const int32_t *face_degree, int64_t *corners,
+                                                gproj_error *error) {
+    int32_t f;
+    *corners = 0;
+    for (f = 0; f < face_count; ++f) {
+        if (face_degree[f] < 3) {
+            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
+                               "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
+        }
+        *corners += face_degree[f];
+        if (*corners > GPROJI_CORNERS_MAX) {
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
+                               "the faces up to face %d have more than %d corners; split the mesh", f,
+                               (int32_t)GPROJI_CORNERS_MAX);
+        }
+    }
+    return GPROJ_OK;
+}
+
 /* Builds the mesh in an object that has none yet. After a failure the object can only be destroyed. */
 GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_soup *soup, gproj_error *error) {
     gproji_pool pool;
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    int32_t f;
     if (soup->vertex_count > GPROJI_VERTICES_MAX) {
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     }
-    /* Degrees come first, because they say how long face_vertex is. */
-    for (f = 0; f < soup->face_count; ++f) {
-        if (soup->face_degree[f] < 3) {
-            return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, soup->face_degree[f]);
-        }
-        corners += soup->face_degree[f];
-        if (corners > GPROJI_CORNERS_MAX) {
-            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
-                               "the faces up to face %d have more than %d corners; split the mesh", f,
-                               (int32_t)GPROJI_CORNERS_MAX);
-        }
-    }
+    code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
+    if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
     if (code) return code;
     soup->corner_count = (int32_t)corners;
@@ -12888,6 +12985,12 @@ GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
     return object;
 }
 
+GPROJI_INTERNAL gproj_code gproji_check_counts(int32_t vertex_count, int32_t face_count, gproj_error *error) {
+    if (vertex_count >= 1 && face_count >= 0) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                       "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+}
+
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error) {
@@ -12895,11 +12998,7 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     gproji_soup soup;
     gproji_mesh_object *object;
     gproji_error_clear(error);
-    if (vertex_count < 1 || face_count < 0) {
-        gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
-                      face_count);
-        return NULL;
-    }
+    if (gproji_check_counts(vertex_count, face_count, error)) return NULL;
     if (!position || (face_count && (!face_degree || !face_vertex))) {
         gproji_refuse(error, "an array of the mesh is NULL");
         return NULL;
@@ -12909,6 +13008,70 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     soup.position = position, soup.face_degree = face_degree, soup.face_vertex = face_vertex;
     object = gproji_mesh_begin(host, error);
     return object ? gproji_mesh_done(object, gproji_mesh_build(object, &soup, error)) : NULL;
+}
+
+/* Refuses arrays that are missing or given twice, and strides that are too short. */
+GPROJI_INTERNAL gproj_code gproji_check_data(const gproj_mesh_data *data, gproj_error *error) {
+    const char *wrong = NULL;
+    size_t least;
+    if (!data) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: there are none");
+    least = 3 * (data->position ? sizeof(double) : sizeof(float));
+    if ((data->position != NULL) == (data->float_position != NULL))
+        wrong = "either position or float_position is needed";
+    else if (data->position_stride && data->position_stride < least)
+        wrong = "position_stride is less than three numbers have";
+    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
+        wrong = "either face_vertex or short_face_vertex is needed";
+    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
+        wrong = "either face_degree or degree is needed";
+    if (wrong) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: %s", wrong);
+    return gproji_check_counts(data->vertex_count, data->face_count, error);
+}
+
+/* Copies the positions to 3 * vertex_count doubles. Strides may leave numbers at odd addresses: hence memcpy. */
+GPROJI_INTERNAL void gproji_copy_positions(const gproj_mesh_data *data, double *position) {
+    size_t size = data->position ? sizeof(double) : sizeof(float), stride = data->position_stride, v, k;
+    const char *from = data->position ? (const char *)data->position : (const char *)data->float_position;
+    if (stride == 0) stride = 3 * size;
+    for (v = 0; v < (size_t)data->vertex_count; ++v) {
+        for (k = 0; k < 3; ++k) {
+            const char *at = from + v * stride + k * size;
+            float number;
+            if (data->position) {
+                memcpy(&position[3 * v + k], at, size);
+                continue;
+            }
+            memcpy(&number, at, size);
+            position[3 * v + k] = number;
+        }
+    }
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    gproji_pool pool;
+    gproj_mesh *mesh = NULL;
+    double *position;
+    int32_t *degree, *vertex = NULL, f;
+    int64_t corners = 0, k;
+    gproj_code code;
+    gproji_error_clear(error);
+    if (gproji_check_data(data, error)) return NULL;
+    gproji_pool_start(&pool, &heap);
+    position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
+    degree = (int32_t *)gproji_pool_take(&pool, data->face_count, sizeof *degree);
+    for (f = 0; degree && f < data->face_count; ++f)
+        degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
+    code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
+    if (code == GPROJ_OK) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
+    if (code == GPROJ_OK && !(position && vertex)) code = gproji_fail_memory(error);
+    if (code == GPROJ_OK) {
+        gproji_copy_positions(data, position);
+        for (k = 0; k < corners; ++k) vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+        mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
+    }
+    gproji_pool_give_all(&pool);
+    return mesh;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
@@ -13926,10 +14089,18 @@ GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_forma
     return writer.failed ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user) {
-    if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF)) return GPROJ_ERROR_ARGUMENT;
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", NULL)) return GPROJ_ERROR_NUMBER;
-    return gproji_write_mesh(mesh, format, write, user);
+GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format format, gproj_write write, void *user,
+                                      gproj_error *error) {
+    gproj_code code;
+    gproji_error_clear(error);
+    if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF))
+        return gproji_fail(
+            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+            "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (code) return code;
+    if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "write: the function to write with has stopped");
 }
 
 /* -- files -- */
@@ -18930,7 +19101,7 @@ typedef struct gproji_unknowns {
     void *user;
 } gproji_unknowns;
 
-/* A solve in frames (gproj_step). */
+/* A solve in frames (gproj_solve_begin). */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
@@ -19015,15 +19186,15 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
 
 /* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would
    not be, in the mesh's units or in the form's. */
-GPROJI_INTERNAL bool gproji_positions_are_finite(gproj_form *form) {
+GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_error *error) {
     int32_t i, k;
-    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", &form->error)) return false;
+    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", error)) return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
         for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
         if (k == 3) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+        gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                     "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
         return false;
     }
@@ -19049,7 +19220,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     form->system = gproj_system_create(&form->host);
     if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
         return gproji_fail_memory(&form->error);
-    if (!gproji_positions_are_finite(form)) return form->error.code;
+    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code;
     /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
        digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
@@ -19064,7 +19235,7 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     }
     edge = gproj_mesh_mean_edge_length(mesh);
     form->scale = edge > 1e-305 ? 1 / edge : 1;
-    if (!gproji_positions_are_finite(form)) return form->error.code; /* in these units, too */
+    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
@@ -19200,14 +19371,6 @@ GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own)
     return part ? part->group : -1;
 }
 
-/* How many elements of this kind the mesh has; 0 for places that are none. */
-GPROJI_INTERNAL int32_t gproji_count_elements(const gproj_mesh *mesh, gproj_place place) {
-    return place == GPROJ_PLACE_VERTEX ? mesh->vertex_count
-           : place == GPROJ_PLACE_EDGE ? mesh->edge_count
-           : place == GPROJ_PLACE_FACE ? mesh->face_count
-                                       : 0;
-}
-
 /* Has the group a weight, in some iteration? */
 GPROJI_INTERNAL bool gproji_is_on(const gproj_form *form, int32_t group) {
     return group >= 0 && gproji_group_at(form->system, group)->schedule.weight > 0;
@@ -19236,33 +19399,43 @@ GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t
         gproji_fail_memory(&s->error);
 }
 
-/* Refuses vertex numbers out of range. */
-GPROJI_INTERNAL bool gproji_vertices_are_valid(gproj_form *form, const char *name, int32_t count,
-                                               const int32_t *vertices) {
-    int32_t i;
-    for (i = 0; i < count; ++i) {
-        if (vertices[i] >= 0 && vertices[i] < form->mesh->vertex_count) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, vertices[i],
-                    "%s: there is no vertex %d (the mesh has %d, counted from 0)", name, vertices[i],
-                    form->mesh->vertex_count);
+/* The number of vertices, edges or faces; 0 for other places. */
+GPROJI_INTERNAL int32_t gproji_element_count(const gproj_mesh *mesh, gproj_place place) {
+    return place == GPROJ_PLACE_VERTEX ? mesh->vertex_count
+           : place == GPROJ_PLACE_EDGE ? mesh->edge_count
+           : place == GPROJ_PLACE_FACE ? mesh->face_count
+                                       : 0;
+}
+
+/* Reads a list of elements: without `elements` the first *count ones, or all for 0. Refuses elements that the mesh does
+   not have. */
+GPROJI_INTERNAL bool gproji_take_list(gproj_form *form, const char *name, gproj_place place, int32_t *count,
+                                      const int32_t *elements) {
+    int32_t have = gproji_element_count(form->mesh, place), i;
+    if (!elements && *count == 0) *count = have;
+    if (*count < 0 || (!elements && *count > have)) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the count is %d, not 0 to %d", name,
+                    *count, have);
+        return false;
+    }
+    for (i = 0; elements && i < *count; ++i) {
+        if (elements[i] >= 0 && elements[i] < have) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
+                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
+                    elements[i], have);
         return false;
     }
     return true;
 }
 
-/* Copies the caller's list of vertices to a new part; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_vertex_part(gproj_form *form, const gproji_rule *rule, int32_t count,
-                                                    const int32_t *vertices) {
+/* Copies the caller's list to a new part; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_new_list_part(gproj_form *form, const gproji_rule *rule, int32_t count,
+                                                  const int32_t *list) {
     gproji_part *part;
-    if (!gproji_form_ready(form)) return NULL;
-    if (count < 0 || (count > 0 && !vertices)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the list of %d vertices is no list",
-                    rule->name, count);
-        return NULL;
-    }
-    if (!gproji_vertices_are_valid(form, rule->name, count, vertices)) return NULL;
+    int32_t k;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, rule->name, rule->place, &count, list)) return NULL;
     part = gproji_new_part(form, rule, count);
-    if (part && count) memcpy(part->vertex, vertices, (size_t)count * sizeof *vertices);
+    for (k = 0; part && k < count; ++k) part->vertex[k] = list ? list[k] : k;
     return part;
 }
 
@@ -19342,7 +19515,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproji_part *part, const double *targe
 }
 
 GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight) {
-    return gproji_add_points(gproji_new_vertex_part(form, &gproji_fixed_rule, count, vertices), NULL, weight);
+    return gproji_add_points(gproji_new_list_part(form, &gproji_fixed_rule, count, vertices), NULL, weight);
 }
 
 GPROJ_API int32_t gproj_add_fixed_boundary(gproj_form *form, double weight) {
@@ -19357,12 +19530,12 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
 
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, &gproji_targets_rule, count, vertices);
-    if (part && count > 0 && !positions) {
+    gproji_part *part = gproji_new_list_part(form, &gproji_targets_rule, count, vertices);
+    if (part && part->count > 0 && !positions) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
         return -1;
     }
-    if (part && gproji_check_positions(count, positions, "target", &form->error)) return -1;
+    if (part && gproji_check_positions(part->count, positions, "target", &form->error)) return -1;
     return gproji_add_points(part, positions, weight);
 }
 
@@ -19674,7 +19847,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
 
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, &gproji_gliding_rule, count, vertices);
+    gproji_part *part = gproji_new_list_part(form, &gproji_gliding_rule, count, vertices);
     gproji_gliding *gliding = gproji_take_gliding(part);
     if (!gliding) return -1;
     if (!curve) {
@@ -20047,7 +20220,8 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                            "element weights: there is no group %d (the form has %d)", group,
                            gproj_system_group_count(form->system));
     info = gproj_system_group_info(form->system, group);
-    have = gproji_count_elements(form->mesh, info.place);
+    have = gproji_element_count(form->mesh, info.place);
+    if (!elements && count == 0) count = have;
     if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "element weights: %d of the %d elements of group '%s', or no weights", count, have,
@@ -20074,40 +20248,6 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* -- lengths of edges -- */
 
-/* Refuses lists with elements (edges, faces) that the mesh does not have: there are `have`. */
-GPROJI_INTERNAL bool gproji_elements_are_valid(gproj_form *form, const char *name, gproj_place place, int32_t have,
-                                               int32_t count, const int32_t *elements) {
-    const char *word = gproji_place_word(place);
-    int32_t i;
-    if (count < 0 || (!elements && count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %d %ss of %d", name, count, word,
-                    have);
-        return false;
-    }
-    for (i = 0; elements && i < count; ++i) {
-        if (elements[i] >= 0 && elements[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
-                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, word, elements[i], have);
-        return false;
-    }
-    return true;
-}
-
-GPROJI_INTERNAL bool gproji_edges_are_valid(gproj_form *form, const char *name, int32_t count, const int32_t *edges) {
-    return gproji_elements_are_valid(form, name, GPROJ_PLACE_EDGE, form->mesh->edge_count, count, edges);
-}
-
-/* Copies the caller's list of edges to a new part; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_edge_part(gproj_form *form, const gproji_rule *rule, int32_t count,
-                                                  const int32_t *edges) {
-    gproji_part *part;
-    int32_t k;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, rule->name, count, edges)) return NULL;
-    part = gproji_new_part(form, rule, count);
-    for (k = 0; part && k < count; ++k) part->vertex[k] = edges ? edges[k] : k;
-    return part;
-}
-
 /* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
     int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
@@ -20130,7 +20270,7 @@ static const gproji_rule gproji_lengths_rule = {"lengths", GPROJ_CONSTRAINT, GPR
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
                                     double weight) {
     int32_t group, k;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "lengths", count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, "lengths", GPROJ_PLACE_EDGE, &count, edges)) return -1;
     group = gproji_new_group(form, &gproji_lengths_rule, weight);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
@@ -20164,13 +20304,13 @@ static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CON
 
 /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    gproji_part *part = gproji_new_edge_part(form, &gproji_equal_lengths_rule, count, edges);
+    gproji_part *part = gproji_new_list_part(form, &gproji_equal_lengths_rule, count, edges);
     const int32_t *common = gproji_part_unknowns(part, 1);
     int32_t k;
     if (!common) return -1;
     gproji_start_length(part);
     gproji_add_group(part, weight);
-    for (k = 0; k < count && gproji_form_ready(form); ++k) {
+    for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         gproj_term term[10];
         gproji_set_length_terms(form->mesh, part->vertex[k], 0.5, term);
         gproji_set_term(&term[9], *common, *common, -0.5);
@@ -20219,7 +20359,7 @@ static const gproji_rule gproji_midsphere_rule = {"midsphere", GPROJ_CONSTRAINT,
                                                   &gproji_midsphere_acts};
 
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
-    gproji_part *part = gproji_new_edge_part(form, &gproji_midsphere_rule, count, edges);
+    gproji_part *part = gproji_new_list_part(form, &gproji_midsphere_rule, count, edges);
     const int32_t *first = gproji_part_unknowns(part, 4);
     const double *sphere;
     double half;
@@ -20367,7 +20507,7 @@ GPROJI_INTERNAL bool gproji_begin_planes(gproji_part *part, int32_t planes, doub
 /* A set of the caller's. */
 GPROJI_INTERNAL int32_t gproji_add_set(gproj_form *form, const gproji_rule *rule, int32_t planes, int32_t count,
                                        const int32_t *vertices, double weight) {
-    gproji_part *part = gproji_new_vertex_part(form, rule, count, vertices);
+    gproji_part *part = gproji_new_list_part(form, rule, count, vertices);
     if (!gproji_begin_planes(part, planes, weight)) return -1;
     gproji_add_plane_set(part, 0);
     return gproji_built(form, part->group);
@@ -20442,7 +20582,8 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     static const double none[3] = {0, 0, 0};
     double n[3] = {0, 0, 0}, across[2][3];
     int32_t group, i, k, c;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, "orthogonal edges", count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
+        return -1;
     if (normal) gproji_copy3(normal, n);
     if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n))) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -20863,16 +21004,26 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 
 /* -- bounds, total area, cost -- */
 
-/* Refuses bounds that make no sense; bound = at least and at most, times `scale`, 0 and infinite without a bound. */
+/* Refuses bounds that are no numbers, or that no number satisfies. */
+GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name, double min, double max) {
+    if (min <= max && (min <= 0 || gproji_is_finite(min)) && (max >= 0 || gproji_is_finite(max))) return true;
+    gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min, max);
+    return false;
+}
+
+/* Takes bounds for something that is never negative: bound = at least and at most, times `scale`; 0 and infinite
+   without a bound. */
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
-    if (max >= 0 && !(max > 0)) max = HUGE_VAL;
-    if (!(min >= 0) || !(max >= min) || !gproji_is_finite(min)) {
+    if (!gproji_bounds_are_valid(form, name, min, max)) return false;
+    if ((min < 0 && gproji_is_finite(min)) || !(max > 0)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: at least %g and at most %g: bounds need 0 <= min <= max", name, min, max);
+                    "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY for none",
+                    name, min, max);
         return false;
     }
-    bound[0] = min * scale;
+    bound[0] = min > 0 ? min * scale : 0;
     bound[1] = gproji_is_finite(max) ? max * scale : HUGE_VAL;
     return true;
 }
@@ -20891,7 +21042,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
     const char *name = gproji_length_bounds_rule.name;
     double bound[2];
     int32_t group, k, side;
-    if (!gproji_form_ready(form) || !gproji_edges_are_valid(form, name, count, edges)) return -1;
+    if (!gproji_form_ready(form) || !gproji_take_list(form, name, GPROJ_PLACE_EDGE, &count, edges)) return -1;
     if (!gproji_take_bounds(form, name, min, max, form->scale, bound)) return -1;
     group = gproji_new_group(form, &gproji_length_bounds_rule, weight);
     for (k = 0; k < count; ++k) {
@@ -20936,16 +21087,13 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     gproji_part *part;
     gproj_term *term;
     int32_t k, side;
-    if (!gproji_form_ready(form) ||
-        !gproji_elements_are_valid(form, name, GPROJ_PLACE_FACE, form->mesh->face_count, count, faces))
-        return -1;
-    part = gproji_new_part(form, &gproji_area_bounds_rule, count);
+    if (!gproji_form_ready(form)) return -1;
+    part = gproji_new_list_part(form, &gproji_area_bounds_rule, count, faces);
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->given)) return -1;
     term = gproji_take_terms(form);
     if (!term) return -1;
     gproji_add_group(part, weight);
-    for (k = 0; k < count; ++k) {
-        part->vertex[k] = faces ? faces[k] : k;
+    for (k = 0; k < part->count; ++k) {
         for (side = 0; side < 2; ++side) {
             int32_t terms = gproji_set_area_terms(form->mesh, part->vertex[k], term);
             if (gproji_has_bound(part->given, side))
@@ -21056,7 +21204,7 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     return gproji_add_global_rows(part, weight, rows);
 }
 
-/* Prescribes a value > 0: "0 means no bound" does not apply to it. */
+/* Prescribes a value > 0: infinities, which bounds may be, are refused. */
 GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                                     double area_price, double value, double weight) {
     if (!gproji_form_ready(form)) return -1;
@@ -21199,15 +21347,22 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
     return gproji_built(form, u->first);
 }
 
-GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values) {
+GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values,
+                                             gproj_error *error) {
     const double *x;
     double offset, factor;
     int32_t i;
-    if (!form || !form->system || !values || count < 0) return GPROJ_ERROR_ARGUMENT;
+    gproji_error_clear(error);
+    if (!form || !values || count < 0)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "unknowns: no form, no room, or %d of them", count);
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     x = gproj_system_values(form->system);
     for (i = 0; i < count; ++i) {
         if (first < 0 || i > INT32_MAX - first || !gproji_find_unit(form, first + i, &offset, &factor))
-            return GPROJ_ERROR_INDEX;
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
+                               "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
+                               (int64_t)first + i);
         values[i] = offset + factor * x[first + i];
     }
     return GPROJ_OK;
@@ -21256,15 +21411,20 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     return row;
 }
 
-GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element) {
-    gproj_place place;
-    int32_t have;
-    if (!form || !per_element) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    if (group < 0 || group >= gproj_system_group_count(form->system)) return GPROJ_ERROR_INDEX;
-    place = gproji_group_at(form->system, group)->place;
-    have = gproji_count_elements(form->mesh, place);
-    gproji_worst_by_element(form->system, group, have, per_element);
+GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
+                                          gproj_error *error) {
+    int32_t groups;
+    gproji_error_clear(error);
+    if (!form || !per_element)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "residuals: no form, or no room for them");
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
+    groups = gproj_system_group_count(form->system);
+    if (group < 0 || group >= groups)
+        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                           "residuals: there is no group %d (the form has %d)", group, groups);
+    gproji_worst_by_element(form->system, group,
+                            gproji_element_count(form->mesh, gproji_group_at(form->system, group)->place), per_element);
     return GPROJ_OK;
 }
 
@@ -21536,17 +21696,17 @@ GPROJI_INTERNAL double *gproji_copy_numbers(gproji_pool *pool, const double *num
 /* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
 GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
                                                  const gproj_supports *supports) {
-    int32_t e, v;
+    int32_t e, v, count = supports ? supports->count : 0;
     if (form->statics) {
         gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "the form has its equilibrium already: set its schedule, or make a new form");
         return false;
     }
-    if (!supports || supports->count < 0 || (supports->count > 0 && !supports->vertex)) {
+    if (!supports || count < 0 || (count > 0 && !supports->vertex)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
         return false;
     }
-    if (!gproji_vertices_are_valid(form, "supports", supports->count, supports->vertex)) return false;
+    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
         !gproji_is_finite(loads->snow)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -21652,13 +21812,26 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
 
 /* -- bounds and fairness of forces -- */
 
+/* Refuses forms without equilibrium. */
+GPROJI_INTERNAL gproj_code gproji_need_statics(const gproj_form *form, const char *name, gproj_error *error) {
+    if (form->statics) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                       "%s: there are no forces yet: call gproj_add_equilibrium before", name);
+}
+
+/* Begins a question to a form, with its array: refuses without them, and after an error of the form. */
+GPROJI_INTERNAL gproj_code gproji_begin_question(const gproj_form *form, const char *name, bool has_array,
+                                                 gproj_error *error) {
+    gproji_error_clear(error);
+    if (!form || !has_array)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: there is no %s", name,
+                           form ? "array for it" : "form");
+    return gproji_form_ready(form) ? GPROJ_OK : gproji_pass_on(error, gproj_form_error(form));
+}
+
 /* Refuses a call that needs equilibrium before. */
 GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
-    if (!gproji_form_ready(form)) return false;
-    if (!form->statics)
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "%s: there are no forces yet: call gproj_add_equilibrium before", name);
-    return form->statics != NULL;
+    return gproji_form_ready(form) && gproji_need_statics(form, name, &form->error) == GPROJ_OK;
 }
 
 static const gproji_rule gproji_compression_rule = {"compression", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
@@ -21669,7 +21842,8 @@ static const gproji_rule gproji_tension_rule = {"tension", GPROJ_BOUND, GPROJ_PL
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
-    if (!gproji_has_statics(form, rule->name) || !gproji_edges_are_valid(form, rule->name, count, edges)) return -1;
+    if (!gproji_has_statics(form, rule->name) || !gproji_take_list(form, rule->name, GPROJ_PLACE_EDGE, &count, edges))
+        return -1;
     group = gproji_new_group(form, rule, weight);
     if (group >= 0) gproji_declare_lazy(form->system, group);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
@@ -21734,13 +21908,10 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     gproji_part *part;
     gproj_term term[6];
     int32_t k, side;
-    if (!gproji_has_statics(form, "stress bounds") || !gproji_edges_are_valid(form, "stress bounds", count, edges))
+    if (!gproji_has_statics(form, "stress bounds") ||
+        !gproji_take_list(form, "stress bounds", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
-    if (!(min <= max) || (min > 0 && !gproji_is_finite(min)) || (max < 0 && !gproji_is_finite(max))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "stress bounds: the least, %g, is not below the greatest, %g", min, max);
-        return -1;
-    }
+    if (!gproji_bounds_are_valid(form, "stress bounds", min, max)) return -1;
     for (k = 0; sections && k < count; ++k) {
         if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
@@ -21852,14 +22023,16 @@ typedef struct gproji_balance {
     int64_t *start; /* the matrix in compressed columns, with `row` and `value` */
     int32_t *row;
     double *value, *b, *lower, *upper;
-    double *load;  /* 3 numbers a vertex */
-    double *force; /* the solution */
-    bool opposite; /* bounds with the other sign */
+    double *load;       /* 3 numbers a vertex */
+    double *force;      /* the solution */
+    bool opposite;      /* bounds with the other sign */
+    gproj_error *error; /* of the form, or of a question */
 } gproji_balance;
 
-GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
+GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, gproji_balance *p) {
     int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
+    p->error = error;
     gproji_pool_start(&p->pool, &form->own);
     p->start = (int64_t *)gproji_pool_take(&p->pool, edges + 1, sizeof *p->start);
     p->row = (int32_t *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->row);
@@ -21871,7 +22044,7 @@ GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproji_balance *p) {
     p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
     if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
     gproji_pool_give_all(&p->pool);
-    gproji_fail_memory(&form->error);
+    gproji_fail_memory(error);
     return false;
 }
 
@@ -21893,7 +22066,7 @@ GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units unit
     gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
-    gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+    gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                 "equilibrium: the loads are too large, their squares overflow");
     return -1;
 }
@@ -21945,7 +22118,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     problem.lower = p->lower, problem.upper = p->upper, problem.damping = damping;
     gproji_error_clear(&error);
     if (gproj_solve_least_squares(&problem, &form->host, p->force, &result, &error) != GPROJ_OK) {
-        gproji_fail(&form->error, error.code, error.place, error.index, "%s", error.message);
+        gproji_pass_on(p->error, &error);
         return false;
     }
     for (e = 0; e < mesh->edge_count; ++e) p->force[e] = s->force[e] >= 0 ? p->force[e] + mean : 0;
@@ -21974,13 +22147,14 @@ GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, 
 }
 
 /* Finds the best forces for the mesh as it is, and the loads that they leave: any of the arrays may be NULL. */
-GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left) {
+GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left,
+                                         gproj_error *error) {
     gproji_balance p;
     double *x, mean;
     int32_t v, e;
-    if (!gproji_has_statics(form, "find forces") || !gproji_positions_are_finite(form) ||
-        !gproji_take_balance(form, &p))
-        return gproj_form_error(form)->code;
+    if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
+        !gproji_take_balance(form, error, &p))
+        return;
     /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
@@ -21995,15 +22169,22 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
     }
     gproji_pool_give_all(&p.pool);
-    return gproj_form_error(form)->code;
 }
 
-GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals) {
-    return form ? gproji_find_balance(form, densities, residuals, NULL) : GPROJ_ERROR_ARGUMENT;
+GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error) {
+    gproj_error own;
+    error = error ? error : &own;
+    if (gproji_begin_question(form, "find forces", true, error) == GPROJ_OK)
+        gproji_find_balance(form, densities, residuals, NULL, error);
+    return error->code;
 }
 
-GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements) {
-    return form && displacements ? gproji_find_balance(form, NULL, NULL, displacements) : GPROJ_ERROR_ARGUMENT;
+GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements, gproj_error *error) {
+    gproj_error own;
+    error = error ? error : &own;
+    if (gproji_begin_question(form, "find imbalance", displacements != NULL, error) == GPROJ_OK)
+        gproji_find_balance(form, NULL, NULL, displacements, error);
+    return error->code;
 }
 
 /* -- the start of a solve -- */
@@ -22128,7 +22309,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     int32_t guidance, e, row = 0;
     if (!s || !gproji_is_on(form, s->group)) return;
     s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &p)) {
+    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
         /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
            wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
            solve for the nearest mesh forces are free. */
@@ -22156,10 +22337,10 @@ GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge
     return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
 }
 
-GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities) {
+GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
+    gproj_code code = gproji_begin_question(form, "get forces", densities != NULL, error);
     int32_t e;
-    if (!form || !densities) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
+    if (code) return code;
     for (e = 0; e < form->mesh->edge_count; ++e) densities[e] = gproji_force_density(form, e);
     return GPROJ_OK;
 }
@@ -22169,31 +22350,34 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
     return form->statics->force[edge];
 }
 
-GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads) {
-    if (!form || !loads) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_form_ready(form)) return gproj_form_error(form)->code;
-    if (!form->statics) return GPROJ_ERROR_STATE;
+GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error) {
+    gproj_code code = gproji_begin_question(form, "get loads", loads != NULL, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "get loads", error);
+    if (code) return code;
     gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
     return GPROJ_OK;
 }
 
-GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities) {
+GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error) {
     gproji_statics *s;
     double *x, mean, of_loads, largest = 0, sum = 0;
     int32_t e, carrying = 0;
-    if (!form) return GPROJ_ERROR_ARGUMENT;
-    if (!gproji_has_statics(form, "set forces")) return gproj_form_error(form)->code;
+    gproj_code code = gproji_begin_question(form, "set forces", true, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "set forces", error);
+    if (code) return code;
     s = form->statics;
-    s->started = false;
     x = gproj_system_values(form->system);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
         if (s->force[e] >= 0) x[s->force[e]] = 0;
-    if (!densities) return GPROJ_OK;
+    if (!densities) {
+        s->started = false;
+        return GPROJ_OK;
+    }
     /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
         if (!gproji_is_finite(densities[e]))
-            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
                                "set forces: the density of edge %d is not a finite number", e);
         largest = gproji_fmax(largest, fabs(densities[e]));
     }
@@ -22206,7 +22390,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities)
     mean = carrying ? largest * sqrt(sum / carrying) : 0;
     /* 2. Forces that are next to nothing must not make the loads huge: then the scale is the density that balances the
        mean load at 45 degrees in a mean edge. */
-    gproj_get_loads(form, s->work);
+    gproj_get_loads(form, s->work, NULL);
     of_loads = gproji_mean_load(form, s->work) * form->scale;
     if (!gproji_is_finite(of_loads)) of_loads = 0;
     if (mean < gproji_least_force * of_loads) mean = of_loads;
@@ -22225,9 +22409,9 @@ GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) 
         gproji_add_force(form->mesh, form->mesh->position, e, gproji_force_density(form, e), out);
 }
 
-GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions) {
+GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c;
-    gproj_code code = gproj_get_loads(form, reactions);
+    gproj_code code = gproj_get_loads(form, reactions, error);
     if (code) return code;
     gproji_add_force_sums(form, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
@@ -22240,7 +22424,7 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
     return GPROJ_OK;
 }
 
-GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
+GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error) {
     gproj_forces m;
     const gproj_mesh *mesh;
     double largest = 0, *sum;
@@ -22248,7 +22432,9 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     bool first = true;
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
-    if (!form || !gproji_has_statics(form, "measure forces")) return m;
+    if (gproji_begin_question(form, "measure forces", true, error) ||
+        gproji_need_statics(form, "measure forces", error))
+        return m;
     mesh = form->mesh;
     /* 1. Edges: extremes and the load path, the sum of |force| length. */
     for (e = 0; e < mesh->edge_count; ++e) {
@@ -22266,7 +22452,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form) {
     }
     /* 2. Vertices: `sum` is the load, then load and forces together. */
     sum = form->statics->work;
-    gproj_get_loads(form, sum);
+    gproj_get_loads(form, sum, NULL);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];
@@ -22761,7 +22947,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     gproj_forces forces;
     if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
         return false;
-    forces = gproj_measure_forces(form);
+    forces = gproj_measure_forces(form, NULL);
     gproji_worst_balanced(form, vertex);
     gproji_format(others, sizeof others, "vertex ");
     if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
@@ -22853,7 +23039,7 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     int32_t *queue = s->queue, *seen = queue + mesh->vertex_count, v, k, found = -1;
-    gproj_get_loads(form, s->work);
+    gproj_get_loads(form, s->work, NULL);
     for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
     for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
         double sum[3] = {0, 0, 0}, size = 0;
@@ -23329,7 +23515,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
             gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
         return false;
     }
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form)) goto failed;
+    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
@@ -23512,19 +23698,28 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
     return result;
 }
 
-GPROJ_API bool gproj_step_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
-    if (!gproji_form_is_open(form)) return false;
-    form->solve.finished = !gproji_begin_solve(form, iterations, options);
-    return form->solve.on;
+GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
+                                 gproj_error *error) {
+    gproji_error_clear(error);
+    if (gproji_form_is_open(form)) {
+        form->solve.finished = !gproji_begin_solve(form, iterations, options);
+        if (form->solve.on) return true;
+    }
+    if (gproji_form_ready(form))
+        gproji_fail(error, form->drag ? GPROJ_ERROR_STATE : GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s",
+                    form->solve.loop.result.message);
+    else
+        gproji_pass_on(error, gproj_form_error(form));
+    return false;
 }
 
-GPROJ_API bool gproj_step_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
+GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
-GPROJ_API void gproj_step_stop(gproj_form *form) {
+GPROJ_API void gproj_solve_stop(gproj_form *form) {
     if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;
 }
 
-/* Refuses a step; if a solve is on it ends with that, for a program may step for as long as it is on. */
+/* Refuses a frame; if a solve is on it ends with that, for a program may advance for as long as it is on. */
 GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code code, const char *sentence) {
     gproj_result result = gproji_refused_result(code, sentence);
     if (!solve->on) return result;
@@ -23534,19 +23729,19 @@ GPROJI_INTERNAL gproj_result gproji_end_frames(gproji_solve *solve, gproj_code c
     return result;
 }
 
-GPROJ_API gproj_result gproj_step(gproj_form *form, double seconds) {
+GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
     gproji_solve *solve;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
-    if (!(seconds >= 0 && seconds <= DBL_MAX) || (seconds > 0 && !form->host.clock.now))
+    if (!(seconds >= 0) || (seconds > 0 && gproji_is_finite(seconds) && !form->host.clock.now))
         return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
-                                 "step: seconds must not be negative, and need a clock in the host");
+                                 "advance: seconds must not be negative, and need a clock in the host");
     if (solve->on && !gproji_has_structure(form->system, solve->structure))
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
-                                 "step: variables, groups or rows were added since gproj_step_begin, so begin anew");
+                                 "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
-    return gproji_refused_result(GPROJ_ERROR_STATE, "step: nothing is under way, call gproj_step_begin before");
+    return gproji_refused_result(GPROJ_ERROR_STATE, "advance: nothing is under way, call gproj_solve_begin before");
 }
 
 /* ============================================================================================================
@@ -24161,9 +24356,11 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
 GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handles *h,
                                              const gproj_drag_options *options, gproj_error *error) {
     const gproji_statics *statics;
+    gproj_error refused;
     int32_t k;
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form))
-        return gproji_pass_on(error, gproj_form_error(form));
+    gproji_error_clear(&refused);
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
+    if (!gproji_positions_are_finite(form, &refused)) return gproji_pass_on(error, &refused);
     statics = form->statics;
     if (form->drag || gproji_is_solving(form->system))
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
@@ -24171,9 +24368,9 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
     if (statics && gproji_is_on(form, statics->group) && !statics->started)
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "drag: the forces have no values yet, solve the form before or set them");
-    if (options && !(options->residual_bound >= 0 && options->residual_bound <= DBL_MAX))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: a residual bound of %g",
-                           options->residual_bound);
+    if (options && !(options->residual_bound >= 0))
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                           "drag: a residual bound of %g is not >= 0", options->residual_bound);
     if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
     for (k = 0; k < h->count; ++k) {
@@ -24210,6 +24407,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     }
     drag->form = form;
     if (options) drag->options = *options;
+    if (drag->options.residual_bound > DBL_MAX) drag->options.residual_bound = 0;
     gproji_pool_start(&drag->pool, &drag->own);
     gproji_error_clear(&drag->error);
     code = gproji_take_drag(drag, handles) ? gproji_write_state(form, drag->state, drag->state_size, error)

@@ -81,10 +81,10 @@ static bool design(roof *r, double volume, double force_fairness, const roof *li
         gproj_add_area_bounds(form, r->mesh->face_count, NULL, 0, like->measures.max_face_area, 1);
     }
     result = gproj_solve(form, 24, NULL);
-    r->forces = gproj_measure_forces(form);
+    r->forces = gproj_measure_forces(form, NULL);
     r->measures = gproj_measure(r->mesh, NULL, NULL);
     r->volume = gproj_volume(r->mesh);
-    gproj_get_forces(form, r->density);
+    gproj_get_forces(form, r->density, NULL);
     gproj_form_destroy(form);
     if (result.outcome != GPROJ_CONVERGED) puts(result.message);
     return result.outcome == GPROJ_CONVERGED;

@@ -67,7 +67,7 @@ int main(void) {
         printf("no dome: %s\n", result.message);
         return 1;
     }
-    gproj_form_get_unknowns(form, unknown, 1, &radius);
+    gproj_form_get_unknowns(form, unknown, 1, &radius, NULL);
     for (v = 0; v < mesh->vertex_count; ++v) {
         const double *p = mesh->position + 3 * v;
         double off = fabs(sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]) - radius);

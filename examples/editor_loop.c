@@ -14,7 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum {
     SIDE = 24,
@@ -33,11 +32,6 @@ typedef struct editor {
     size_t size[STATES];
     int now, last; /* of the states */
 } editor;
-
-static double seconds(void *user) {
-    (void)user;
-    return (double)clock() / CLOCKS_PER_SEC;
-}
 
 /* Makes the present the next state; what could have been redone is forgotten. */
 static void remember(editor *e) {
@@ -68,7 +62,7 @@ static void handle(editor *e, const char *event) {
     int32_t vertex = HANDLE;
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     switch (event[0]) {
-    case 's': gproj_step_begin(e->form, 30, NULL); break;
+    case 's': gproj_solve_begin(e->form, 30, NULL, NULL); break;
     case 'g': /* grab: stops a solve that is on */
         e->drag = gproj_drag_begin(e->form, &handles, NULL, NULL);
         follow_mouse(e, 0);
@@ -92,7 +86,7 @@ static void roof(int32_t i, int32_t j, double p[3]) {
 int main(void) {
     static const char *const script[] = {"solve", "wait", "grab", "move",   "move", "move", "drop",
                                          "grab",  "move", "move", "escape", "undo", "redo", NULL};
-    gproj_host host = {{NULL, NULL, NULL, NULL, 0}, {NULL, NULL}, {seconds, NULL}};
+    gproj_host host = gproj_default_host(); /* with a clock, for the frames */
     editor e = {NULL, NULL, NULL, {NULL}, {0}, 0, 0};
     int32_t i;
     const char *const *next = script;
@@ -102,9 +96,9 @@ int main(void) {
     gproj_add_fixed_corners(e.form, 1);
     gproj_add_fairness(e.form, 0.05);
     while (*next) { /* one frame */
-        bool busy = gproj_step_is_on(e.form);
-        if (busy) gproj_step(e.form, frame_seconds); /* as many iterations as fit, at least one */
-        if (busy && !gproj_step_is_on(e.form)) remember(&e);
+        bool busy = gproj_solve_is_on(e.form);
+        if (busy) gproj_solve_advance(e.form, frame_seconds); /* as many iterations as fit, at least one */
+        if (busy && !gproj_solve_is_on(e.form)) remember(&e);
         if (busy && **next == 'w') continue; /* the script waits for the solver; a user would not */
         handle(&e, *next);
         printf("%-7s handle at %.3f, planarity %s\n", *next++, e.mesh->position[3 * HANDLE + 2],

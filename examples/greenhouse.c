@@ -46,7 +46,7 @@ static gproj_form *stand(gproj_mesh *mesh, const double *density) {
     gproj_add_equilibrium(form, &loads, &supports, 1);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_add_gliding_boundary(form, 1);
-    gproj_set_forces(form, density);
+    gproj_set_forces(form, density, NULL);
     return form;
 }
 
@@ -70,7 +70,7 @@ int main(void) {
     lift.tolerance = 1e-10, lift.epsilon = 1e-6; /* keeps it so: lifting and equilibrium in plan depend on each other */
     result = gproj_solve(form, 20, &lift);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
-    gproj_get_forces(form, density);
+    gproj_get_forces(form, density, NULL);
     gproj_form_destroy(form);
     form = stand(mesh, density);
     gproj_add_planarity(form, 1);
@@ -78,7 +78,7 @@ int main(void) {
     gproj_set_schedule(form, gproj_add_tangential_fairness(form, 1), wish);
     result = gproj_solve(form, 40, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
-    forces = gproj_measure_forces(form);
+    forces = gproj_measure_forces(form, NULL);
     for (j = 0; j < AROUND; ++j) {
         int32_t inner[3]; /* its neighbours: the middle one is not on the ground */
         const double *a = mesh->position + 3 * j, *b;
@@ -93,7 +93,7 @@ int main(void) {
     printf("angles at the ground  %s\n", gproj_form_group_info(form, right).max <= 1e-9 ? "right to 1e-9" : "no");
     printf("slope at the ground   %.0f degrees, the same within %.1f\n", (low + high) / 2, high - low);
     printf("folded edges          %d\n", (int)gproj_measure(mesh, NULL, NULL).folded_edges);
-    gproj_get_forces(form, density);
+    gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "greenhouse.obj", NULL);
     gprojx_picture_of_forces("greenhouse.svg", mesh, density, 0, -62, 28);
     gproj_form_destroy(form);

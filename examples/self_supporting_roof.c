@@ -54,7 +54,7 @@ int main(void) {
     gproj_set_schedule(form, gproj_add_fairness(form, 1), fair);
     result = gproj_solve(form, 24, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
-    forces = gproj_measure_forces(form);
+    forces = gproj_measure_forces(form, NULL);
     measures = gproj_measure(mesh, start->position, NULL);
     printf("panels planar           %s\n", measures.planarity_max <= 1e-12 ? "to 1e-12 mean edge lengths" : "no");
     printf("every vertex stands     %s\n", forces.residual <= 1e-9 ? "to 1e-9 of its load" : "no");
@@ -62,7 +62,7 @@ int main(void) {
     printf("largest force           %.0f %% of the load\n", 100 * forces.max_force / forces.total_load);
     printf("the design moved by     %.0f %% of its size at most\n", 100 * measures.deviation_max);
     printf("folded edges            %d\n", (int)measures.folded_edges);
-    gproj_get_forces(form, density);
+    gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "self_supporting_roof.obj", NULL);
     gprojx_picture_of_forces("self_supporting_roof.svg", mesh, density, 0, -58, 14);
     gproj_form_destroy(form);

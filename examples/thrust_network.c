@@ -70,7 +70,7 @@ int main(void) {
     gproj_set_schedule(form, gproj_add_tangential_fairness(form, wish.weight), wish);
     result = gproj_solve(form, 12, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
-    forces = gproj_measure_forces(form);
+    forces = gproj_measure_forces(form, NULL);
     for (i = 0; i < mesh->face_count; ++i) {
         double a[3];
         gproj_mesh_face_area_vector(mesh, i, a);
@@ -83,7 +83,7 @@ int main(void) {
     printf("load                    %.0f\n", forces.total_load);
     printf("largest force           %.0f %% of it\n", 100 * forces.max_force / forces.total_load);
     printf("folded edges            %d\n", (int)gproj_measure(mesh, NULL, NULL).folded_edges);
-    gproj_get_forces(form, density);
+    gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "thrust_network.obj", NULL);
     gprojx_picture_of_forces("thrust_network.svg", mesh, density, 0, -52, 14);
     gproj_form_destroy(form);

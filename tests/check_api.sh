@@ -104,8 +104,8 @@ fi
 
 # ---- options begin as zeros ----
 
-options=$(sed '/^#ifdef GUIDEDPROJ_IMPLEMENTATION/,$d' "$header" | grep -oE '^\} gproj_([a-z_]*_options|host|loads|supports)' | tr -d '} ')
-[ "$(wc -w <<<"$options")" -ge 8 ] && pass || fail 'the options were not found'
+options=$(sed '/^#ifdef GUIDEDPROJ_IMPLEMENTATION/,$d' "$header" | grep -oE '^\} gproj_([a-z_]*_options|host|loads|supports|handles|mesh_data)' | tr -d '} ')
+[ "$(wc -w <<<"$options")" -ge 10 ] && pass || fail 'the options were not found'
 {
     echo '#include "guidedproj.h"'
     echo 'int use(const void *any); int begin(void); int begin(void) { int sum = 0;'
@@ -113,9 +113,9 @@ options=$(sed '/^#ifdef GUIDEDPROJ_IMPLEMENTATION/,$d' "$header" | grep -oE '^\}
     echo 'return sum; }'
 } >"$work/zeros.c"
 cp "$work/zeros.c" "$work/zeros.cpp"
-for compiler in 'gcc -std=c99 -DZEROS={0} zeros.c' 'g++ -std=c++11 -DZEROS={} zeros.cpp' 'clang++ -std=c++11 -DZEROS={} zeros.cpp'; do
+for compiler in 'gcc -std=c99 -DZEROS={0} zeros.c' 'clang -std=c99 -DZEROS={0} zeros.c' 'g++ -std=c++11 -DZEROS={} zeros.cpp' 'clang++ -std=c++11 -DZEROS={} zeros.cpp'; do
     have "${compiler%% *}" || { skip "zeros: no ${compiler%% *}"; continue; }
-    job "zeros: $compiler" "${compiler% *} -Wall -Wextra -Werror -Wpedantic -I'$root' -fsyntax-only ${compiler##* }"
+    job "zeros: $compiler" "${compiler% *} -Wall -Wextra -Wmissing-field-initializers -Werror -Wpedantic -I'$root' -fsyntax-only ${compiler##* }"
 done
 grep -q '`= {}` in C++' "$header" && pass || fail 'the manual does not say how options begin in C++'
 

@@ -27,7 +27,7 @@ typedef struct gprojt_ask {
     int32_t group, count;
     int32_t vertex[GPROJT_LIST];
     double position[3 * GPROJT_LIST];
-    double min, max; /* of lengths, areas, a cost; 0: none */
+    double min, max; /* of lengths, areas, a cost; infinite: none */
     bool partly;     /* some of its elements have other weights */
 } gprojt_ask;
 
@@ -226,14 +226,14 @@ static void gprojt_ask_forces(gprojt_case *c) {
     residuals = gprojt_random_numbers(c, n, 1);
     free(c->forces);
     c->forces = gprojt_random_numbers(c, c->mesh->edge_count, way & 4 ? 1e3 : 1);
-    if (way & 1 && gproj_find_forces(c->form, c->forces, residuals) == GPROJ_OK)
+    if (way & 1 && gproj_find_forces(c->form, c->forces, residuals, NULL) == GPROJ_OK)
         GPROJT_MUST(gprojt_all_finite(c->forces, c->mesh->edge_count) && gprojt_all_finite(residuals, n));
-    if (way & 2) gproj_set_forces(c->form, way & 8 ? NULL : c->forces);
-    if (gproj_get_reactions(c->form, loads) == GPROJ_OK) {
-        m = gproj_measure_forces(c->form);
+    if (way & 2) gproj_set_forces(c->form, way & 8 ? NULL : c->forces, NULL);
+    if (gproj_get_reactions(c->form, loads, NULL) == GPROJ_OK) {
+        m = gproj_measure_forces(c->form, NULL);
         GPROJT_MUST(gprojt_all_finite(loads, 3 * n) && m.residual >= 0 && m.residual < HUGE_VAL);
         GPROJT_MUST(m.load_path >= 0 && m.max_reaction >= 0 && m.min_force <= m.max_force);
-        GPROJT_MUST(gproj_get_forces(c->form, c->forces) == GPROJ_OK);
+        GPROJT_MUST(gproj_get_forces(c->form, c->forces, NULL) == GPROJ_OK);
         for (e = 0; e < c->mesh->edge_count; ++e) GPROJT_MUST(fabs(c->forces[e]) < HUGE_VAL);
     }
     free(loads), free(residuals);
@@ -246,7 +246,7 @@ static double gprojt_off_balance(const gprojt_case *c) {
            *size = (double *)calloc((size_t)n + 1, sizeof *size);
     double *w = (double *)malloc(((size_t)c->mesh->edge_count + 1) * sizeof *w), off = 0;
     if (!sum || !size || !w) abort();
-    GPROJT_MUST(gproj_get_loads(c->form, sum) == GPROJ_OK && gproj_get_forces(c->form, w) == GPROJ_OK);
+    GPROJT_MUST(gproj_get_loads(c->form, sum, NULL) == GPROJ_OK && gproj_get_forces(c->form, w, NULL) == GPROJ_OK);
     for (e = 0; e < n; ++e) size[e] = fabs(sum[e]);
     for (e = 0; e < c->mesh->edge_count; ++e) {
         for (k = 0; k < 3; ++k) {
@@ -265,7 +265,7 @@ static double gprojt_off_balance(const gprojt_case *c) {
 
 static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
     static const double parts[4] = {0.7, 1, 1.2, 3};
-    double part = parts[a->count % 4], total = part * (a->max > 0 ? a->max : 1);
+    double part = parts[a->count % 4], total = part * (a->max < INFINITY ? a->max : 1);
     switch (a->what) {
     case GPROJT_PLANAR: return gproj_add_planarity(c->form, weight);
     case GPROJT_FIX: return gproj_add_fixed(c->form, a->count, a->vertex, weight);
@@ -311,13 +311,14 @@ static void gprojt_schedule_of_bytes(gprojt_case *c, int32_t group) {
 }
 
 static void gprojt_bounds_of_bytes(gprojt_case *c, gprojt_ask *a) {
-    static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {0, 1, 1.3, 4};
+    static const double mins[4] = {0, 0.3, 0.9, 1}, maxs[4] = {INFINITY, 1, 1.3, 4};
     double edge = gproj_mesh_mean_edge_length(c->mesh), unit = edge;
     if (a->what == GPROJT_AREAS) unit = edge * edge;
     if (a->what == GPROJT_TOTAL_AREA || a->what == GPROJT_TOTAL_AREA_BOUNDS) unit = c->mesh->face_count * edge * edge;
     if (a->what == GPROJT_COST || a->what == GPROJT_TOTAL_COST)
         unit = c->mesh->edge_count * edge + 0.5 * c->mesh->face_count * edge * edge;
     a->min = mins[gprojt_choose(c, 4)] * unit, a->max = maxs[gprojt_choose(c, 4)] * unit;
+    if (!(a->max > 0)) a->max = INFINITY; /* a mesh without edges */
 }
 
 /* Other weights for some elements of a group. */
@@ -428,7 +429,7 @@ static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     for (e = 0; a->what == GPROJT_LENGTHS && e < mesh->edge_count; ++e) {
         double length = gprojt_edge_length(mesh, e);
         if (a->min > 0) off = fmax(off, (a->min - length) * (a->min + length) / (2 * a->min));
-        if (a->max > 0) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
+        if (a->max < INFINITY) off = fmax(off, (length - a->max) * (length + a->max) / (2 * a->max));
     }
     return off;
 }

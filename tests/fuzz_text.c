@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (gprojt_validate_mesh(mesh)) abort();
     memset(&text, 0, sizeof text);
     format = data[0] & 64 && !mesh->polyline_count ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-    if (gproj_mesh_write(mesh, format, gprojt_text_write, &text)) abort();
+    if (gproj_mesh_write(mesh, format, gprojt_text_write, &text, NULL)) abort();
     back = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_DETECT, NULL, &error);
     if (!back || !gprojt_same_mesh(mesh, back)) abort();
     gproj_mesh_destroy(back);

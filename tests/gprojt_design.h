@@ -53,7 +53,7 @@ static inline void gprojt_add_design(gproj_form *form, const gproj_mesh *mesh, i
     if (design == GPROJT_GLIDING) gproj_add_gliding_boundary(form, 1);
     if (design == GPROJT_GLIDING) gproj_add_volume(form, gproj_volume(mesh), 1);
     if (design == GPROJT_BOUNDED) gproj_add_length_bounds(form, mesh->edge_count, NULL, 0.85, 1.4, 1);
-    if (design == GPROJT_BOUNDED) gproj_add_area_bounds(form, mesh->face_count, NULL, 0.7, 0, 1);
+    if (design == GPROJT_BOUNDED) gproj_add_area_bounds(form, mesh->face_count, NULL, 0.7, HUGE_VAL, 1);
     if (design != GPROJT_PLAIN) gproj_add_fairness(form, 0.05);
 }
 

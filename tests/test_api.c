@@ -49,9 +49,34 @@ GPROJT_TEST(zeros_are_the_defaults) { /* as check_api.sh writes them in C++ */
     gproj_mesh_destroy(mesh);
 }
 
+/* Zeros but for a clock that does not run backwards; a solve with a budget goes by it. */
+GPROJT_TEST(default_host) {
+    gproj_host host = gproj_default_host();
+    const char *text = "v 0 0 0\nv 1 0 0\nv 1 1 .2\nv 0 1 0\nf 1 2 3 4\n";
+    gproj_mesh *mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, &host, NULL);
+    gproj_form *form = gproj_form_create(mesh, &host);
+    gproj_solve_options options = {0};
+    double before;
+    int i;
+    GPROJT_CHECK(!host.allocator.allocate && !host.parallel.run && host.allocator.limit == 0);
+    GPROJT_REQUIRE(host.clock.now != NULL);
+    before = host.clock.now(host.clock.user);
+    for (i = 0; i < 1000; ++i) {
+        double now = host.clock.now(host.clock.user);
+        GPROJT_CHECK(now >= before);
+        before = now;
+    }
+    gproj_add_planarity(form, 1);
+    options.time_budget = 1e6;
+    GPROJT_CHECK(gproj_solve(form, 20, &options).outcome == GPROJ_CONVERGED);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(version);
     GPROJT_RUN(sentences);
     GPROJT_RUN(zeros_are_the_defaults);
+    GPROJT_RUN(default_host);
     return gprojt_report();
 }

@@ -160,7 +160,7 @@ GPROJT_TEST(special_sets) {
     gproj_result result;
     GPROJT_CHECK(gproj_form_group_info(form, gproj_add_coplanar(form, 3, few, 1)).rows == 0);
     GPROJT_CHECK(gproj_form_group_info(form, gproj_add_collinear(form, 2, few, 1)).rows == 0);
-    GPROJT_CHECK(gproj_form_group_info(form, gproj_add_coplanar(form, 0, NULL, 1)).rows == 0);
+    GPROJT_CHECK(gproj_form_group_info(form, gproj_add_coplanar(form, 0, few, 1)).rows == 0);
     for (k = 0; k < 2 * (SIDE + 1); ++k) all[k] = k;
     group = gproj_add_coplanar(form, 2 * (SIDE + 1), all, 0);
     result = gproj_solve(form, 5, NULL);
@@ -263,7 +263,7 @@ GPROJT_TEST(refusals) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t group = i == 0   ? gproj_add_coplanar(form, 4, far, 1)
                         : i == 1 ? gproj_add_collinear(form, 4, far, 1)
-                        : i == 2 ? gproj_add_coplanar(form, 4, NULL, 1)
+                        : i == 2 ? gproj_add_coplanar(form, 10000, NULL, 1)
                         : i == 3 ? gproj_add_collinear(form, -1, far, 1)
                         : i == 4 ? gproj_add_orthogonal_edges(form, zero, 1, NULL, 1)
                         : i == 5 ? gproj_add_orthogonal_edges(form, NULL, 1, NULL, 1)

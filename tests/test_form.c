@@ -1653,8 +1653,12 @@ GPROJT_TEST(positions_beyond_all_measures) {
             GPROJT_CHECK(!gproj_drag_begin(form, &handles, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
         else
             GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_FAILED);
-        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
-        GPROJT_CHECK(strstr(gproj_form_error(form)->message, "beyond 1e70; use a larger unit of length") != NULL);
+        if (i == 4)
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        else
+            error = *gproj_form_error(form);
+        GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(strstr(error.message, "beyond 1e70; use a larger unit of length") != NULL);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
@@ -1766,7 +1770,7 @@ static int32_t gprojt_wrong_form_call(gproj_form *form, int call) {
     case 0: return gproj_add_fixed(form, 2, bad, 1);
     case 1: return gproj_add_fixed(form, 2, negative, 1);
     case 2: return gproj_add_fixed(form, -2, good, 1);
-    case 3: return gproj_add_fixed(form, 2, NULL, 1);
+    case 3: return gproj_add_fixed(form, 10000, NULL, 1);
     case 4: return gproj_add_targets(form, 2, bad, points, 1);
     case 5: return gproj_add_targets(form, 2, good, NULL, 1);
     case 6: return gproj_add_gliding(form, NULL, 2, good, 1);
@@ -1799,8 +1803,8 @@ static void gprojt_check_form_stuck(gproj_form *form, const gprojt_props *props)
 GPROJT_TEST(form_refusals) {
     static const char *const says[GPROJT_FORM_CALLS] = {"no vertex 25 (the mesh has 25",
                                                         "no vertex -1",
-                                                        "list of -2 vertices",
-                                                        "list of 2 vertices",
+                                                        "fixed vertices: the count is -2",
+                                                        "the count is 10000, not 0 to 25",
                                                         "targets: there is no vertex 25",
                                                         "there are no positions",
                                                         "there is no curve",
@@ -1848,11 +1852,11 @@ GPROJT_TEST(empty_lists_and_no_iterations) {
     double *before = gprojt_keep(mesh);
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_result result;
-    int32_t targets;
-    GPROJT_CHECK(gproj_add_fixed(form, 0, NULL, 1) == 0 && gproj_form_group_info(form, 0).rows == 0);
-    targets = gproj_add_targets(form, 0, NULL, NULL, 1);
+    int32_t targets, none = 0;
+    GPROJT_CHECK(gproj_add_fixed(form, 0, &none, 1) == 0 && gproj_form_group_info(form, 0).rows == 0);
+    targets = gproj_add_targets(form, 0, &none, NULL, 1);
     GPROJT_CHECK(gproj_set_targets(form, targets, props.position) == GPROJ_OK);
-    GPROJT_CHECK(gproj_add_gliding(form, props.curve, 0, NULL, 1) == 2);
+    GPROJT_CHECK(gproj_add_gliding(form, props.curve, 0, &none, 1) == 2);
     gproj_add_planarity(form, 1);
     result = gproj_solve(form, 0, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == 0 && result.residual > 0);
@@ -1860,6 +1864,45 @@ GPROJT_TEST(empty_lists_and_no_iterations) {
     GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
     gproj_form_destroy(form);
     free(before);
+    gprojt_give_props(&props);
+    gproj_mesh_destroy(mesh);
+}
+
+static int32_t gprojt_rows(const gproj_form *form, int32_t group) { return gproj_form_group_info(form, group).rows; }
+
+/* (0, NULL) is all, 0 with a list is none, NULL with a count the first ones: for every function with a list. */
+GPROJT_TEST(lists) {
+    static const double up[3] = {0, 0, 1};
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 6);
+    gprojt_props props = gprojt_take_props(mesh);
+    int32_t way, V = mesh->vertex_count, E = mesh->edge_count, F = mesh->face_count, list = 0;
+    gproj_loads loads;
+    gproj_supports supports;
+    memset(&loads, 0, sizeof loads), loads.density = 1;
+    memset(&supports, 0, sizeof supports);
+    for (way = 0; way < 3; ++way) { /* all, none, the first 4 */
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        const int32_t *none = way == 1 ? &list : NULL;
+        int32_t n = way == 2 ? 4 : 0, v = way == 0 ? V : n, e = way == 0 ? E : n, f = way == 0 ? F : n, group;
+        gproj_add_equilibrium(form, &loads, &supports, 1); /* {0} supports no vertex */
+        GPROJT_CHECK(gprojt_rows(form, 0) == 3 * V);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_fixed(form, n, none, 1)) == 3 * v);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_targets(form, n, none, mesh->position, 1)) == 3 * v);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_gliding(form, props.curve, n, none, 1)) == 3 * v);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_coplanar(form, n, none, 1)) == (v ? v + 1 : 0));
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_collinear(form, n, none, 1)) == (v ? 2 * v + 3 : 0));
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_lengths(form, n, none, NULL, 1)) == e);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_equal_lengths(form, n, none, 1)) == e);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_orthogonal_edges(form, up, n, none, 1)) == 2 * e);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_length_bounds(form, n, none, 0.5, INFINITY, 1)) == e);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_area_bounds(form, n, none, -INFINITY, 9, 1)) == f);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_compression(form, n, none, 1)) == e);
+        GPROJT_CHECK(gprojt_rows(form, gproj_add_tension(form, n, none, 1)) == e);
+        group = gproj_add_stress_bounds(form, n, none, NULL, 0, 1, 1);
+        GPROJT_CHECK(gprojt_rows(form, group) == 2 * e);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        gproj_form_destroy(form);
+    }
     gprojt_give_props(&props);
     gproj_mesh_destroy(mesh);
 }
@@ -2085,9 +2128,9 @@ GPROJT_TEST(beyond_all_coordinates) {
         GPROJT_CHECK(result.outcome == GPROJ_STALLED && strstr(result.message, "beyond coordinates of 1e70"));
         GPROJT_CHECK(gprojt_unmoved(mesh, before) && gproj_form_error(form)->code == GPROJ_OK);
     }
-    GPROJT_CHECK(gproj_step_begin(form, 60, NULL));
-    while (gproj_step_is_on(form)) gproj_step(form, 0);
-    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
+    GPROJT_CHECK(gproj_solve_begin(form, 60, NULL, NULL));
+    while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_STALLED && gproj_form_error(form)->code == GPROJ_OK);
     free(before);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -2140,6 +2183,7 @@ int main(void) {
     GPROJT_RUN(positions_that_are_no_numbers);
     GPROJT_RUN(form_refusals);
     GPROJT_RUN(empty_lists_and_no_iterations);
+    GPROJT_RUN(lists);
     GPROJT_RUN(wrong_options_are_of_the_call);
     GPROJT_RUN(int32_max_iterations);
     GPROJT_RUN(tolerance_is_told);

@@ -357,14 +357,146 @@ static bool gprojt_make_copy(const gproj_host *host, void *user) {
     return gprojt_mesh_was_made(copy, host, &error);
 }
 
+/* The layouts of the mesh data: one bit each. */
+enum {
+    GPROJT_UNIFORM = 1,
+    GPROJT_FLOATS = 2,
+    GPROJT_STRIDE = 4,
+    GPROJT_SHORTS = 8,
+    GPROJT_LAYOUTS = 16
+};
+
+/* A soup in a layout: `buffer` gets the positions, which floats hold exactly, `index` the short corners. */
+static gproj_mesh_data gprojt_lay_out(const gprojt_soup *s, int layout, char *buffer, uint16_t *index) {
+    size_t size = layout & GPROJT_FLOATS ? sizeof(float) : sizeof(double);
+    size_t stride = layout & GPROJT_STRIDE ? 5 * size + 3 : 3 * size; /* also at odd addresses */
+    gproj_mesh_data data;
+    int32_t i, k;
+    memset(&data, 0, sizeof data);
+    memset(buffer, 0x7f, (size_t)s->vertex_count * 48);
+    for (i = 0; i < s->vertex_count; ++i)
+        for (k = 0; k < 3; ++k) {
+            float number = (float)s->position[3 * i + k];
+            char *to = buffer + (size_t)i * stride + (size_t)k * size;
+            memcpy(to, layout & GPROJT_FLOATS ? (void *)&number : (void *)&s->position[3 * i + k], size);
+        }
+    for (i = 0; i < s->corner_count; ++i) index[i] = (uint16_t)s->corner[i];
+    data.vertex_count = s->vertex_count, data.face_count = s->face_count;
+    if (layout & GPROJT_FLOATS)
+        data.float_position = (const float *)(void *)buffer;
+    else
+        data.position = (const double *)(void *)buffer;
+    data.position_stride = layout & GPROJT_STRIDE ? stride : 0;
+    data.face_degree = layout & GPROJT_UNIFORM ? NULL : s->degree;
+    data.degree = layout & GPROJT_UNIFORM ? s->degree[0] : 0;
+    data.face_vertex = layout & GPROJT_SHORTS ? NULL : s->corner;
+    data.short_face_vertex = layout & GPROJT_SHORTS ? index : NULL;
+    return data;
+}
+
+/* Triangles, quads, faces of several degrees: each layout gives the mesh of the plain one. */
+GPROJT_TEST(layouts) {
+    int kind, layout;
+    for (kind = 0; kind < 3; ++kind) {
+        gprojt_soup s = kind == 0   ? gprojt_triangle_grid(4, 3)
+                        : kind == 1 ? gprojt_quad_grid(4, 3)
+                                    : gprojt_hybrid_grid(4, 3);
+        gproj_mesh *plain;
+        char *buffer = (char *)malloc((size_t)s.vertex_count * 48);
+        uint16_t *index = (uint16_t *)malloc((size_t)s.corner_count * sizeof *index);
+        int32_t i, f;
+        bool uniform = true;
+        GPROJT_REQUIRE(buffer && index);
+        for (i = 0; i < 3 * s.vertex_count; ++i) s.position[i] = (float)s.position[i];
+        for (f = 0; f < s.face_count; ++f) uniform = uniform && s.degree[f] == s.degree[0];
+        GPROJT_CHECK(uniform == (kind < 2));
+        plain = gprojt_soup_mesh(&s, NULL, NULL);
+        for (layout = 0; layout < GPROJT_LAYOUTS; ++layout) {
+            gproj_mesh_data data = gprojt_lay_out(&s, layout, buffer, index);
+            gproj_error error;
+            gproj_mesh *mesh;
+            if (!uniform && layout & GPROJT_UNIFORM) continue;
+            mesh = gproj_mesh_from_data(&data, NULL, &error);
+            GPROJT_CHECK(mesh && error.code == GPROJ_OK && gprojt_same_mesh(mesh, plain));
+            gproj_mesh_destroy(mesh);
+        }
+        gproj_mesh_destroy(plain);
+        free(buffer), free(index);
+        gprojt_soup_free(&s);
+    }
+}
+
+static void gprojt_refused_data(const gproj_mesh_data *data, gproj_code code, gproj_place place, int64_t index,
+                                const char *says) {
+    gproj_error error;
+    GPROJT_CHECK(!gproj_mesh_from_data(data, NULL, &error) && error.code == code && error.place == place);
+    GPROJT_CHECK(error.index == index && strstr(error.message, says));
+    if (!strstr(error.message, says)) printf("    %s\n", error.message);
+    GPROJT_CHECK(!gproj_mesh_from_data(data, NULL, NULL));
+}
+
+GPROJT_TEST(refused_layouts) {
+    float position[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    double exact[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    uint16_t corner[6] = {0, 1, 2, 0, 2, 3};
+    int32_t plain[6] = {0, 1, 2, 0, 2, 3}, degree[2] = {3, -1};
+    gproj_mesh_data good, data;
+    gproj_mesh *mesh;
+    memset(&good, 0, sizeof good);
+    good.vertex_count = 4, good.float_position = position;
+    good.face_count = 2, good.degree = 3, good.short_face_vertex = corner;
+    mesh = gproj_mesh_from_data(&good, NULL, NULL);
+    GPROJT_CHECK(mesh && mesh->face_count == 2 && mesh->edge_count == 5);
+    gproj_mesh_destroy(mesh);
+    gprojt_refused_data(NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "there are none");
+    data = good, data.float_position = NULL;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either position or");
+    data = good, data.position = exact;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either position or");
+    data = good, data.position_stride = 8;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "position_stride");
+    data = good, data.short_face_vertex = NULL;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either face_vertex or");
+    data = good, data.face_vertex = plain;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either face_vertex or");
+    data = good, data.degree = 0;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either face_degree or degree");
+    data = good, data.degree = 2;
+    gprojt_refused_data(&data, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, 0, "face 0 has 2 corners");
+    data = good, data.face_degree = degree;
+    gprojt_refused_data(&data, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, 1, "face 1 has -1 corners");
+    data = good, data.vertex_count = 0;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "at least one vertex");
+    data = good, data.face_count = -1;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-1 faces");
+    corner[4] = 4;
+    gprojt_refused_data(&good, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, 1, "face 1 names vertex 4");
+    corner[4] = 2, position[7] = NAN;
+    gprojt_refused_data(&good, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 2, "vertex 2");
+    data = good, data.vertex_count = 2, data.face_count = 0, data.short_face_vertex = NULL;
+    mesh = gproj_mesh_from_data(&data, NULL, NULL); /* vertices alone */
+    GPROJT_CHECK(mesh && mesh->isolated_count == 2);
+    gproj_mesh_destroy(mesh);
+}
+
+static bool gprojt_make_from_data(const gproj_host *host, void *user) {
+    gproj_error error;
+    return gprojt_mesh_was_made(gproj_mesh_from_data((const gproj_mesh_data *)user, host, &error), host, &error);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gprojt_soup s = gprojt_tube(7, 3), flipped = gprojt_soup_copy(&s);
+    gproj_mesh_data data;
     gproj_mesh *mesh;
     int32_t k = flipped.corner[41];
     flipped.corner[41] = flipped.corner[43], flipped.corner[43] = k;
     mesh = gprojt_soup_mesh(&flipped, NULL, NULL);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_mesh, &flipped) >= 10);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_copy, mesh) >= 6);
+    memset(&data, 0, sizeof data);
+    data.vertex_count = s.vertex_count, data.position = s.position;
+    data.face_count = s.face_count, data.face_degree = s.degree, data.face_vertex = s.corner;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_make_from_data, &data) >= 10);
     gproj_mesh_destroy(mesh);
     gprojt_soup_free(&flipped);
     gprojt_soup_free(&s);
@@ -408,6 +540,8 @@ int main(void) {
     GPROJT_RUN(refused_arrays);
     GPROJT_RUN(random_faces);
     GPROJT_RUN(huge_valence);
+    GPROJT_RUN(layouts);
+    GPROJT_RUN(refused_layouts);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(a_limit_of_memory);
     GPROJT_RUN(real_meshes);

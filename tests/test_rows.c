@@ -62,7 +62,7 @@ GPROJT_TEST(a_ball_in_any_units) {
         GPROJT_CHECK(group >= 0 && gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
         result = gproj_solve(form, 25, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
-        GPROJT_CHECK(gproj_form_get_unknowns(form, at, 4, ball) == GPROJ_OK);
+        GPROJT_CHECK(gproj_form_get_unknowns(form, at, 4, ball, NULL) == GPROJ_OK);
         GPROJT_CHECK(gprojt_off_ball(mesh, ball) < 1e-9 * unit);
         /* The same ball in all units. */
         for (k = 0; k < 3; ++k) ball[k] = (ball[k] - shifts[i][k]) / sizes[i];
@@ -134,7 +134,7 @@ GPROJT_TEST(unknowns_start_anew) {
         int32_t calls = starts.calls;
         memcpy(mesh->position, begin, bytes);
         GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == GPROJ_CONVERGED && starts.calls == calls + 1);
-        gproj_form_get_unknowns(form, at, 4, ball[round]);
+        gproj_form_get_unknowns(form, at, 4, ball[round], NULL);
         if (round == 0) memcpy(end, mesh->position, bytes);
     }
     GPROJT_CHECK(memcmp(end, mesh->position, bytes) == 0 && memcmp(ball[0], ball[1], sizeof ball[0]) == 0);
@@ -161,12 +161,12 @@ GPROJT_TEST(states_and_drags_know_unknowns) {
     size_t size;
     gprojt_add_ball(form, mesh, 1, none, NULL, NULL, &at);
     gproj_solve(form, 25, NULL);
-    gproj_form_get_unknowns(form, at, 4, solved);
+    gproj_form_get_unknowns(form, at, 4, solved, NULL);
     state = gprojt_save(form, &size);
     mesh->position[2] += 0.3;
     gproj_solve(form, 25, NULL);
     GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
-    gproj_form_get_unknowns(form, at, 4, ball);
+    gproj_form_get_unknowns(form, at, 4, ball, NULL);
     GPROJT_CHECK(memcmp(ball, solved, sizeof ball) == 0 && gprojt_off_ball(mesh, ball) < 1e-9);
     drag = gproj_drag_begin(form, &handles, NULL, NULL);
     GPROJT_REQUIRE(drag != NULL);
@@ -174,7 +174,7 @@ GPROJT_TEST(states_and_drags_know_unknowns) {
     position[2] += 0.05;
     GPROJT_CHECK(gproj_drag_move(drag, position) == GPROJ_OK);
     GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
-    gproj_form_get_unknowns(form, at, 4, ball);
+    gproj_form_get_unknowns(form, at, 4, ball, NULL);
     GPROJT_CHECK(gprojt_off_ball(mesh, ball) < 1e-9);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -195,20 +195,20 @@ GPROJT_TEST(residuals_by_element) {
     options.skip_closeness = true;
     gproj_solve(form, 1, &options);
     unit = 1 / gprojt_unit(form);
-    gproj_form_get_unknowns(form, at, 4, ball);
-    GPROJT_CHECK(gproj_form_residuals(form, group, vertex) == GPROJ_OK);
+    gproj_form_get_unknowns(form, at, 4, ball, NULL);
+    GPROJT_CHECK(gproj_form_residuals(form, group, vertex, NULL) == GPROJ_OK);
     for (i = 0; i < mesh->vertex_count; ++i) {
         double far = gprojt_far(mesh->position + 3 * i, ball), phi = fabs(far * far - ball[3] * ball[3]) / 32;
         GPROJT_NEAR(vertex[i], phi * unit, 1e-9);
         worst = fmax(worst, vertex[i]);
     }
     GPROJT_NEAR(worst, gproj_form_group_info(form, group).max, 1e-15);
-    GPROJT_CHECK(gproj_form_residuals(form, planar, face) == GPROJ_OK);
+    GPROJT_CHECK(gproj_form_residuals(form, planar, face, NULL) == GPROJ_OK);
     for (worst = 0, i = 0; i < mesh->face_count; ++i) worst = fmax(worst, face[i]);
     GPROJT_CHECK(worst == gproj_form_group_info(form, planar).max && worst > 0);
-    GPROJT_CHECK(gproj_form_residuals(form, 99, face) == GPROJ_ERROR_INDEX);
-    GPROJT_CHECK(gproj_form_residuals(form, -1, face) == GPROJ_ERROR_INDEX);
-    GPROJT_CHECK(gproj_form_residuals(NULL, 0, face) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_form_residuals(form, 99, face, NULL) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_residuals(form, -1, face, NULL) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_residuals(NULL, 0, face, NULL) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);

@@ -181,7 +181,7 @@ static void gprojt_make_meshes(void) {
     for (i = 0; i < GPROJT_MESHES; ++i) {
         gprojt_soup s = gprojt_quad_grid(2 + 2 * i, 9);
         gprojt_mesh[i] = gprojt_soup_mesh(&s, NULL, NULL);
-        gproj_mesh_write(gprojt_mesh[i], GPROJ_FORMAT_OBJ, gprojt_store, &i);
+        gproj_mesh_write(gprojt_mesh[i], GPROJ_FORMAT_OBJ, gprojt_store, &i, NULL);
         gprojt_soup_free(&s);
     }
 }

@@ -455,13 +455,13 @@ GPROJT_TEST(a_callback_gives_a_first_weight) {
                            : kind == 1 ? gproj_add_volume(form, 1.02 * gproj_volume(mesh), 0)
                                        : gproj_add_fixed_corners(form, 0);
             waking.schedule = gprojt_schedule(kind == 0 ? 0.1 : 1, 1, kind == 0 ? 9 : 0);
-            GPROJT_CHECK(gproj_step_begin(form, 20, &options));
+            GPROJT_CHECK(gproj_solve_begin(form, 20, &options, NULL));
             do {
-                result = gproj_step(form, 0);
+                result = gproj_solve_advance(form, 0);
                 GPROJT_CHECK(result.iterations > 2 || gprojt_is_on(form));
                 if (frames && result.iterations == 2)
                     gproj_system_set_schedule(gproj_form_system(form), waking.group, waking.schedule);
-            } while (gproj_step_is_on(form));
+            } while (gproj_solve_is_on(form));
             GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 3);
             GPROJT_CHECK(gprojt_is_on(form) == (kind > 0));
             if (kind > 0) GPROJT_CHECK(gproj_form_group_info(form, waking.group).max <= 1e-12);
@@ -543,9 +543,9 @@ GPROJT_TEST(the_guard_waits_until_it_acts) {
     }
     GPROJT_CHECK(gproj_solve(forms[0], 20, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_guarded(forms[0]) > 0 && gprojt_guarded(forms[0]) < crooked[0]->face_count / 2);
-    GPROJT_REQUIRE(gproj_step_begin(forms[1], 20, NULL));
-    do result = gproj_step(forms[1], 0);
-    while (gproj_step_is_on(forms[1]));
+    GPROJT_REQUIRE(gproj_solve_begin(forms[1], 20, NULL, NULL));
+    do result = gproj_solve_advance(forms[1], 0);
+    while (gproj_solve_is_on(forms[1]));
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_guarded(forms[1]) == gprojt_guarded(forms[0]));
     GPROJT_CHECK(gprojt_unmoved(crooked[0], crooked[1]->position));
     gproj_solve(forms[2], 0, NULL); /* adds the guard */
@@ -769,18 +769,18 @@ static void gprojt_check_restored(int past, int other_past, bool nearest) {
     int k;
     memset(&options, 0, sizeof options);
     options.nearest = nearest;
-    gproj_step_begin(form, 20, &options);
-    for (k = 0; k < 3; ++k) gproj_step(form, 0);
+    gproj_solve_begin(form, 20, &options, NULL);
+    for (k = 0; k < 3; ++k) gproj_solve_advance(form, 0);
     size = gproj_state_size(form);
     state = malloc(size);
     GPROJT_CHECK(gproj_state_save(form, state, size, NULL) == GPROJ_OK);
-    do result = gproj_step(form, 0);
-    while (gproj_step_is_on(form));
+    do result = gproj_solve_advance(form, 0);
+    while (gproj_solve_is_on(form));
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_is_on(form) == (past != GPROJT_ONCE && !nearest));
     GPROJT_CHECK(gproj_state_restore(other, state, size, NULL) == GPROJ_OK);
-    do result = gproj_step(other, 0);
-    while (gproj_step_is_on(other));
+    do result = gproj_solve_advance(other, 0);
+    while (gproj_solve_is_on(other));
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_is_on(other) == gprojt_is_on(form));
     GPROJT_CHECK(gprojt_followed(form, other));
     gprojt_shake(mesh, 0.01, 4);
@@ -817,15 +817,15 @@ GPROJT_TEST(frames_of_nearest_solves_may_be_disturbed) {
         options.nearest = true;
         gproj_add_planarity(form, 1);
         group = gproj_add_fairness(form, 0);
-        gproj_step_begin(form, 40, &options);
+        gproj_solve_begin(form, 40, &options, NULL);
         do {
-            result = gproj_step(form, 0);
+            result = gproj_solve_advance(form, 0);
             if (++frames != 5) continue;
             if (what == 0) gproj_set_schedule(form, group, gprojt_schedule(0.1, 1, 0));
             if (what == 1) gproj_system_solve(gproj_form_system(form), 1, NULL);
             size = (int32_t)gproj_state_size(form);
             GPROJT_CHECK(size > 0);
-        } while (gproj_step_is_on(form));
+        } while (gproj_solve_is_on(form));
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 5);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);

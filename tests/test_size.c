@@ -89,8 +89,8 @@ GPROJT_TEST(some_edges_and_faces) {
     GPROJT_CHECK(gprojt_edge_length(mesh, 20) > 0.7 * edge);
     gproj_form_destroy(form);
     form = gproj_form_create(mesh, NULL);
-    length = gproj_add_length_bounds(form, mesh->edge_count, NULL, 0, 0, 1); /* no bounds: no rows */
-    area = gproj_add_area_bounds(form, mesh->face_count, NULL, 0, INFINITY, 1);
+    length = gproj_add_length_bounds(form, mesh->edge_count, NULL, 0, INFINITY, 1); /* no bounds: no rows */
+    area = gproj_add_area_bounds(form, mesh->face_count, NULL, -INFINITY, INFINITY, 1);
     GPROJT_CHECK(length == 0 && area == 1 && gproj_form_group_info(form, length).rows == 0);
     GPROJT_CHECK(gproj_form_group_info(form, area).rows == 0);
     gproj_form_destroy(form);
@@ -148,7 +148,7 @@ GPROJT_TEST(bounds_in_other_units) {
         double area = edge * edge * unit[k] * unit[k];
         gproj_add_planarity(form, 1);
         gproj_add_length_bounds(form, mesh->edge_count, NULL, 0.8 * edge * unit[k], 1.1 * edge * unit[k], 1);
-        gproj_add_area_bounds(form, mesh->face_count, NULL, 0.6 * area, 0, 1);
+        gproj_add_area_bounds(form, mesh->face_count, NULL, 0.6 * area, INFINITY, 1);
         gproj_add_cost_bounds(form, 1, 2 / unit[k], 0, cost * unit[k], 1);
         GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
         gproj_form_destroy(form);
@@ -241,7 +241,7 @@ GPROJT_TEST(bounds_hold_from_below) {
     for (i = 0; i < 8; ++i) {
         gproj_mesh *mesh = gprojt_noisy(0, 4, 0.03, 3);
         gproj_form *form = gproj_form_create(mesh, NULL);
-        double edge = gproj_mesh_mean_edge_length(mesh), min = i % 2 ? 0.5 : 0, max = i % 2 ? 0 : 50;
+        double edge = gproj_mesh_mean_edge_length(mesh), min = i % 2 ? 0.5 : 0, max = i % 2 ? INFINITY : 50;
         gproj_result result;
         gproj_add_fairness(form, 0.01);
         if (i / 2 == 0) gproj_add_length_bounds(form, mesh->edge_count, NULL, min * edge, max * edge, 1);
@@ -268,7 +268,8 @@ GPROJT_TEST(elements_are_switched) {
     GPROJT_REQUIRE(kept && weights);
     for (e = 0; e < mesh->edge_count; ++e) kept[e] = gprojt_edge_length(mesh, e), weights[e] = e % 2;
     gprojt_shake(mesh, 0.02, 5);
-    GPROJT_CHECK(gproj_set_element_weights(form, group, mesh->edge_count, NULL, weights) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_element_weights(form, group, 0, &e, NULL) == GPROJ_OK);      /* none */
+    GPROJT_CHECK(gproj_set_element_weights(form, group, 0, NULL, weights) == GPROJ_OK); /* all */
     result = gproj_solve(form, 20, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
     for (e = 0; e < mesh->edge_count; ++e) {
@@ -396,7 +397,7 @@ GPROJT_TEST(refusals) {
     static const double weights[] = {1, -1}, good[] = {1, 1};
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
     int i;
-    for (i = 0; i < 24; ++i) {
+    for (i = 0; i < 27; ++i) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t lengths = gproj_add_lengths(form, 2, NULL, NULL, 1), total = gproj_add_total_area(form, 1, 1);
         long group = 0;
@@ -425,8 +426,12 @@ GPROJT_TEST(refusals) {
         if (i == 21) group = -(gproj_set_element_weights(form, 99, 1, NULL, good) == GPROJ_ERROR_INDEX);
         if (i == 22) group = -(gproj_set_element_weights(form, lengths, 1, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
         if (i == 23) group = -(gproj_set_element_weights(form, lengths, -1, NULL, good) == GPROJ_ERROR_ARGUMENT);
+        if (i == 24) group = gproj_add_length_bounds(form, 2, NULL, 1, 0, 1);
+        if (i == 25) group = gproj_add_area_bounds(form, 2, NULL, -INFINITY, 0, 1);
+        if (i == 26) group = gproj_add_total_area_bounds(form, -INFINITY, -INFINITY, 1);
         if (i == 18 || i == 21) code = GPROJ_ERROR_INDEX;
         GPROJT_CHECK(group == -1 && gproj_form_error(form)->code == code);
+        if (i == 2 || i == 4 || i == 24) GPROJT_CHECK(strstr(gproj_form_error(form)->message, "length bounds: min = "));
         if (group != -1 || gproj_form_error(form)->code != code)
             printf("  %d: %ld, %s\n", i, group, gproj_form_error(form)->message);
         GPROJT_CHECK(gproj_add_length_bounds(form, 1, NULL, 1, 2, 1) == -1); /* after an error: nothing */

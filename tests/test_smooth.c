@@ -225,20 +225,20 @@ GPROJT_TEST(frames_and_states) {
                  : kind == 1 ? gprojt_add_circular
                              : gprojt_add_carrying)(form[k], mesh[k]);
             }
-            GPROJT_CHECK(gproj_step_begin(form[0], 60, &options));
-            for (k = 0; k < at && gproj_step_is_on(form[0]); ++k) gproj_step(form[0], 0);
+            GPROJT_CHECK(gproj_solve_begin(form[0], 60, &options, NULL));
+            for (k = 0; k < at && gproj_solve_is_on(form[0]); ++k) gproj_solve_advance(form[0], 0);
             size = gproj_state_size(form[0]);
             state = (uint8_t *)malloc(size);
             GPROJT_CHECK(gproj_state_save(form[0], state, size, &error) == GPROJ_OK);
             memset(&result, 0, sizeof result);
-            while (gproj_step_is_on(form[0])) result = gproj_step(form[0], 0);
+            while (gproj_solve_is_on(form[0])) result = gproj_solve_advance(form[0], 0);
             most = result.iterations;
             end = gprojt_keep(mesh[0]);
             for (k = 0; k < 2; ++k) {
                 gproj_code code = gproj_state_restore(form[k], state, size, &error);
                 if (code != GPROJ_OK) printf("  %s\n", error.message);
-                GPROJT_CHECK(code == GPROJ_OK && gproj_step_is_on(form[k]));
-                while (gproj_step_is_on(form[k])) result = gproj_step(form[k], 0);
+                GPROJT_CHECK(code == GPROJ_OK && gproj_solve_is_on(form[k]));
+                while (gproj_solve_is_on(form[k])) result = gproj_solve_advance(form[k], 0);
                 GPROJT_CHECK(result.iterations == most);
                 GPROJT_CHECK(gprojt_largest_move(mesh[k]->position, end, mesh[k]->vertex_count) <= 1e-9);
             }

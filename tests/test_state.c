@@ -36,17 +36,17 @@ GPROJT_TEST(frames_are_one_solve) {
             gproj_mesh *mesh = gprojt_roof(6, 0.08);
             gproj_form *form = gprojt_design(mesh, design, NULL);
             int32_t frames = 0;
-            GPROJT_CHECK(!gproj_step_is_on(form));
-            GPROJT_CHECK(gproj_step_begin(form, GPROJT_ITERATIONS, &options) && gproj_step_is_on(form));
-            while (gproj_step_is_on(form) && frames++ < 100) {
-                result = gproj_step(form, 0);
-                GPROJT_CHECK(!gproj_step_is_on(form) || result.outcome == GPROJ_TIME_OUT);
-                GPROJT_CHECK(!gproj_step_is_on(form) || result.iterations == frames);
+            GPROJT_CHECK(!gproj_solve_is_on(form));
+            GPROJT_CHECK(gproj_solve_begin(form, GPROJT_ITERATIONS, &options, NULL) && gproj_solve_is_on(form));
+            while (gproj_solve_is_on(form) && frames++ < 100) {
+                result = gproj_solve_advance(form, 0);
+                GPROJT_CHECK(!gproj_solve_is_on(form) || result.outcome == GPROJ_TIME_OUT);
+                GPROJT_CHECK(!gproj_solve_is_on(form) || result.iterations == frames);
             }
             GPROJT_CHECK(result.outcome == whole.outcome && result.iterations == whole.iterations);
             GPROJT_CHECK(strcmp(result.message, whole.message) == 0);
             GPROJT_CHECK(gprojt_unmoved(mesh, expected));
-            GPROJT_CHECK(strcmp(gproj_step(form, 0).message, whole.message) == 0); /* again */
+            GPROJT_CHECK(strcmp(gproj_solve_advance(form, 0).message, whole.message) == 0); /* again */
             free(expected);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
@@ -67,20 +67,20 @@ GPROJT_TEST(frames_have_their_time) {
     host.clock.now = gprojt_tick, host.clock.user = &ticks;
     form = gprojt_design(mesh, GPROJT_PLANAR, &host);
     memset(&options, 0, sizeof options);
-    GPROJT_REQUIRE(gproj_step_begin(form, 30, NULL));
-    first = gproj_step(form, 1e-3).iterations; /* one fits always */
+    GPROJT_REQUIRE(gproj_solve_begin(form, 30, NULL, NULL));
+    first = gproj_solve_advance(form, 1e-3).iterations; /* one fits always */
     GPROJT_CHECK(first == 1);
     before = ticks.now;
-    result = gproj_step(form, 60);
+    result = gproj_solve_advance(form, 60);
     second = result.iterations - first;
     GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && second > 1 && second < 10 && ticks.now - before <= 62);
-    GPROJT_CHECK(gproj_step(form, 1e6).outcome == GPROJ_CONVERGED && !gproj_step_is_on(form));
+    GPROJT_CHECK(gproj_solve_advance(form, 1e6).outcome == GPROJ_CONVERGED && !gproj_solve_is_on(form));
     /* a budget of the whole counts the seconds inside of steps */
     gprojt_shake(mesh, 0.05, 3);
     options.time_budget = 40;
-    GPROJT_REQUIRE(gproj_step_begin(form, 30, &options));
-    while (gproj_step_is_on(form)) {
-        result = gproj_step(form, 0);
+    GPROJT_REQUIRE(gproj_solve_begin(form, 30, &options, NULL));
+    while (gproj_solve_is_on(form)) {
+        result = gproj_solve_advance(form, 0);
         ticks.now += 1000;
     }
     GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && result.iterations > 1 && result.iterations < 10);
@@ -93,6 +93,30 @@ static bool gprojt_cancel(void *user, gproj_system *system, const gproj_iteratio
     return iteration->number < *(const int32_t *)user;
 }
 
+/* INFINITY is no bound, of a frame and of a solve, and needs no clock. */
+GPROJT_TEST(frames_without_bound) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.08), *other = gprojt_roof(5, 0.08);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL), *at_once = gprojt_design(other, GPROJT_PLANAR, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.time_budget = INFINITY;
+    GPROJT_CHECK(gproj_solve(at_once, 30, &options).outcome == GPROJ_CONVERGED);
+    GPROJT_REQUIRE(gproj_solve_begin(form, 30, &options, NULL));
+    gproj_solve_advance(form, 0);
+    result = gproj_solve_advance(form, INFINITY);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !gproj_solve_is_on(form));
+    GPROJT_CHECK(gprojt_unmoved(mesh, other->position));
+    options.time_budget = NAN;
+    GPROJT_CHECK(strstr(gproj_solve(form, 30, &options).message, "time budget"));
+    options.time_budget = -INFINITY;
+    GPROJT_CHECK(strstr(gproj_solve(form, 30, &options).message, "time budget"));
+    gproj_form_destroy(form);
+    gproj_form_destroy(at_once);
+    gproj_mesh_destroy(mesh);
+    gproj_mesh_destroy(other);
+}
+
 GPROJT_TEST(frames_can_be_left) {
     gproj_mesh *mesh = gprojt_roof(5, 0.08);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -102,60 +126,67 @@ GPROJT_TEST(frames_can_be_left) {
     gproj_handles handles = gprojt_vertex_handles(1, &v);
     double *kept;
     memset(&options, 0, sizeof options);
-    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing is under way"));
-    gproj_step_begin(form, 20, NULL);
-    gproj_step(form, 0);
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, 0).message, "nothing is under way"));
+    gproj_solve_begin(form, 20, NULL, NULL);
+    gproj_solve_advance(form, 0);
     kept = gprojt_keep(mesh);
-    gproj_step_stop(form);
-    GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !gproj_step_is_on(form));
-    GPROJT_CHECK(strstr(gproj_step(form, 0).message, "nothing is under way"));
-    gproj_step_begin(form, 20, NULL); /* by a solve, by a drag */
+    gproj_solve_stop(form);
+    GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !gproj_solve_is_on(form));
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, 0).message, "nothing is under way"));
+    gproj_solve_begin(form, 20, NULL, NULL); /* by a solve, by a drag */
     gproj_solve(form, 2, NULL);
-    GPROJT_CHECK(!gproj_step_is_on(form));
-    gproj_step_begin(form, 20, NULL);
+    GPROJT_CHECK(!gproj_solve_is_on(form));
+    gproj_solve_begin(form, 20, NULL, NULL);
     gproj_drag_cancel(gproj_drag_begin(form, &handles, NULL, &error));
-    GPROJT_CHECK(gproj_step_is_on(form)); /* as before the drag */
+    GPROJT_CHECK(gproj_solve_is_on(form)); /* as before the drag */
     options.on_iteration = gprojt_cancel, options.user = &last;
-    gproj_step_begin(form, 20, &options);
-    while (gproj_step_is_on(form)) gproj_step(form, 0);
-    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_CANCELLED && gproj_step(form, 0).iterations == 3);
+    gproj_solve_begin(form, 20, &options, NULL);
+    while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_CANCELLED &&
+                 gproj_solve_advance(form, 0).iterations == 3);
     /* what does not go */
-    GPROJT_CHECK(strstr(gproj_step(form, -1).message, "must not be negative"));
-    GPROJT_CHECK(strstr(gproj_step(form, 1).message, "a clock"));
-    GPROJT_CHECK(!gproj_step_begin(form, -1, NULL) && strstr(gproj_step(form, 0).message, "-1 iterations"));
-    gproj_step_begin(form, 20, NULL);
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, -1).message, "must not be negative"));
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, 1).message, "a clock"));
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, NAN).message, "must not be negative"));
+    GPROJT_CHECK(!gproj_solve_begin(form, -1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(error.message, "-1 iterations"));
+    GPROJT_CHECK(!gproj_solve_begin(form, -1, NULL, NULL) &&
+                 strstr(gproj_solve_advance(form, 0).message, "-1 iterations"));
+    gproj_solve_begin(form, 20, NULL, NULL);
     group = gproj_add_closeness(form, 0.01);
-    GPROJT_CHECK(group >= 0 && strstr(gproj_step(form, 0).message, "were added") && !gproj_step_is_on(form));
-    GPROJT_CHECK(gproj_step_begin(form, 20, NULL) && gproj_step(form, 0).iterations == 1);
+    GPROJT_CHECK(group >= 0 && strstr(gproj_solve_advance(form, 0).message, "were added") && !gproj_solve_is_on(form));
+    GPROJT_CHECK(gproj_solve_begin(form, 20, NULL, NULL) && gproj_solve_advance(form, 0).iterations == 1);
     mesh->position[0] = HUGE_VAL;
-    GPROJT_CHECK(!gproj_step_begin(form, 20, NULL) && gproj_step(form, 0).outcome == GPROJ_FAILED);
-    GPROJT_CHECK(!gproj_step_begin(NULL, 20, NULL) && gproj_step(NULL, 0).outcome == GPROJ_FAILED);
-    GPROJT_CHECK(!gproj_step_is_on(NULL));
-    gproj_step_stop(NULL);
+    GPROJT_CHECK(!gproj_solve_begin(form, 20, NULL, &error) && gproj_solve_advance(form, 0).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER && error.place == GPROJ_PLACE_VERTEX && error.index == 0);
+    GPROJT_CHECK(!gproj_solve_begin(NULL, 20, NULL, &error) && error.code != GPROJ_OK);
+    GPROJT_CHECK(!gproj_solve_begin(NULL, 20, NULL, NULL) && gproj_solve_advance(NULL, 0).outcome == GPROJ_FAILED);
+    GPROJT_CHECK(!gproj_solve_is_on(NULL));
+    gproj_solve_stop(NULL);
     free(kept);
     gproj_form_destroy(form);
     form = gproj_form_create(NULL, NULL);
-    gproj_step_stop(form); /* a form without a mesh has no system */
+    gproj_solve_stop(form); /* a form without a mesh has no system */
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
 
 /* Whatever fails between frames, a loop that steps for as long as a solve is on comes to its end. */
 GPROJT_TEST(failures_end_frames) {
-    static const double seconds[] = {0.01, -1, NAN, HUGE_VAL, 0};
+    static const double seconds[] = {0.01, -1, NAN, -HUGE_VAL, 0};
     int32_t outside = 99;
     int k;
     for (k = 0; k < 5; ++k) {
         gproj_mesh *mesh = gprojt_roof(5, 0.08);
         gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
         gproj_result result;
-        GPROJT_CHECK(gproj_step_begin(form, 20, NULL));
+        GPROJT_CHECK(gproj_solve_begin(form, 20, NULL, NULL));
         if (k == 4) gproj_add_fixed(form, 1, &outside, 1);
-        result = gproj_step(form, seconds[k]);
-        GPROJT_CHECK(result.outcome == GPROJ_FAILED && !gproj_step_is_on(form));
+        result = gproj_solve_advance(form, seconds[k]);
+        GPROJT_CHECK(result.outcome == GPROJ_FAILED && !gproj_solve_is_on(form));
         GPROJT_CHECK(strstr(result.message, k < 4 ? "need a clock" : "no vertex 99"));
-        GPROJT_CHECK(strcmp(gproj_step(form, 0).message, result.message) == 0); /* again */
-        GPROJT_CHECK(gproj_step_begin(form, 20, NULL) == (k < 4));
+        GPROJT_CHECK(strcmp(gproj_solve_advance(form, 0).message, result.message) == 0); /* again */
+        GPROJT_CHECK(gproj_solve_begin(form, 20, NULL, NULL) == (k < 4));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
@@ -172,14 +203,14 @@ GPROJT_TEST(frames_follow_targets) {
     gproj_add_fixed_corners(form, 1);
     gproj_add_fairness(form, 0.1);
     group = gproj_add_targets(form, 1, &v, to, 1);
-    gproj_step_begin(form, 40, NULL);
+    gproj_solve_begin(form, 40, NULL, NULL);
     for (k = 0; k < 10; ++k) {
         to[2] += 0.05;
         gproj_set_targets(form, group, to);
-        gproj_step(form, 0);
+        gproj_solve_advance(form, 0);
     }
-    while (gproj_step_is_on(form)) gproj_step(form, 0);
-    GPROJT_CHECK(gproj_step(form, 0).outcome == GPROJ_CONVERGED);
+    while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, to) < 1e-9);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -190,8 +221,8 @@ GPROJT_TEST(frames_follow_targets) {
 /* Goes on to the end. */
 static gproj_result gprojt_go_on(gproj_form *form) {
     gproj_result result;
-    do result = gproj_step(form, 0);
-    while (gproj_step_is_on(form));
+    do result = gproj_solve_advance(form, 0);
+    while (gproj_solve_is_on(form));
     return result;
 }
 
@@ -212,12 +243,12 @@ static void gprojt_check_resumed(int design, int nearest, int32_t at) {
     uint8_t *state;
     size_t size;
     int32_t k;
-    gproj_step_begin(form, GPROJT_ITERATIONS, &options);
-    for (k = 0; k < at && gproj_step_is_on(form); ++k) gproj_step(form, 0);
+    gproj_solve_begin(form, GPROJT_ITERATIONS, &options, NULL);
+    for (k = 0; k < at && gproj_solve_is_on(form); ++k) gproj_solve_advance(form, 0);
     state = gprojt_save(form, &size);
     for (k = 0; k < 2; ++k) {
         if (k) GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
-        if (!gproj_step_is_on(form)) continue;
+        if (!gproj_solve_is_on(form)) continue;
         gprojt_check_same_form(form, state, size);
         result = gprojt_go_on(form);
         GPROJT_CHECK(gprojt_unmoved(mesh, expected));
@@ -226,7 +257,7 @@ static void gprojt_check_resumed(int design, int nearest, int32_t at) {
     gprojt_shake(other, 0.3, 1); /* positions that do not matter */
     GPROJT_CHECK(gproj_state_restore(fresh, state, size, NULL) == GPROJ_OK);
     gprojt_check_same_form(fresh, state, size);
-    if (gproj_step_is_on(fresh)) gprojt_go_on(fresh);
+    if (gproj_solve_is_on(fresh)) gprojt_go_on(fresh);
     GPROJT_CHECK(gprojt_unmoved(other, expected));
     free(state), free(expected);
     gproj_form_destroy(form), gproj_form_destroy(fresh);
@@ -262,8 +293,8 @@ GPROJT_TEST(resumed_with_forces_that_bend) {
     size_t size;
     int32_t k;
     for (k = 0; k < 3; ++k) form[k] = gprojt_flat_net(&mesh[k]);
-    GPROJT_REQUIRE(gproj_step_begin(form[0], 20, NULL));
-    for (k = 0; k < 3; ++k) gproj_step(form[0], 0);
+    GPROJT_REQUIRE(gproj_solve_begin(form[0], 20, NULL, NULL));
+    for (k = 0; k < 3; ++k) gproj_solve_advance(form[0], 0);
     state = gprojt_save(form[0], &size);
     gproj_solve(form[1], 2, NULL); /* has them already */
     for (k = 0; k < 3; ++k) {
@@ -294,7 +325,7 @@ GPROJT_TEST(undo_and_redo) {
     undo = gprojt_save(form, &undo_size); /* before anything was solved */
     for (k = 0; k < 2; ++k) {
         if (k) GPROJT_CHECK(gproj_state_restore(form, undo, undo_size, NULL) == GPROJ_OK);
-        GPROJT_CHECK(gproj_get_forces(form, forces) == GPROJ_OK && forces[3] == 0);
+        GPROJT_CHECK(gproj_get_forces(form, forces, NULL) == GPROJ_OK && forces[3] == 0);
         to[2] += k ? 0 : 0.3;
         gproj_set_targets(form, targets, to);
         GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
@@ -336,8 +367,8 @@ static void gprojt_check_refused(gproj_form *form, const uint8_t *state, size_t 
 /* A form in the middle of a solve, and its state. */
 static gproj_form *gprojt_form_in_frames(gproj_mesh *mesh, uint8_t **state, size_t *size) {
     gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL);
-    gproj_step_begin(form, GPROJT_ITERATIONS, NULL);
-    gproj_step(form, 0);
+    gproj_solve_begin(form, GPROJT_ITERATIONS, NULL, NULL);
+    gproj_solve_advance(form, 0);
     *state = gprojt_save(form, size);
     return form;
 }
@@ -404,7 +435,7 @@ GPROJT_TEST(forged_states_do_no_harm) {
         gprojt_seal(forged, size);
         if (gproj_state_restore(form, forged, size, NULL) == GPROJ_OK) {
             ++taken;
-            if (taken % 20 == 0) gproj_step(form, 0);
+            if (taken % 20 == 0) gproj_solve_advance(form, 0);
         } else {
             ++refused;
         }
@@ -487,8 +518,8 @@ GPROJT_TEST(failing_allocations) {
     gproj_mesh *mesh = gprojt_roof(3, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_STANDING, NULL);
     gprojt_saved saved;
-    gproj_step_begin(form, GPROJT_ITERATIONS, NULL);
-    gproj_step(form, 0);
+    gproj_solve_begin(form, GPROJT_ITERATIONS, NULL, NULL);
+    gproj_solve_advance(form, 0);
     saved.state = gprojt_save(form, &saved.size);
     gprojt_go_on(form);
     saved.end = gprojt_keep(mesh);
@@ -501,6 +532,7 @@ GPROJT_TEST(failing_allocations) {
 int main(void) {
     GPROJT_RUN(frames_are_one_solve);
     GPROJT_RUN(frames_have_their_time);
+    GPROJT_RUN(frames_without_bound);
     GPROJT_RUN(frames_can_be_left);
     GPROJT_RUN(failures_end_frames);
     GPROJT_RUN(frames_follow_targets);

@@ -158,15 +158,15 @@ static double gprojt_check_balance(gproj_form *form, const gproj_loads *loads, d
     double *w = gprojt_numbers(mesh->edge_count), *f = gprojt_numbers(n), *r = gprojt_numbers(n);
     double *truth = gprojt_true_loads(mesh, loads), unbalance, size = 0, sum[6] = {0};
     gprojt_list pins = gprojt_boundary(mesh);
-    GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && gproj_get_loads(form, f) == GPROJ_OK);
-    GPROJT_CHECK(gproj_get_reactions(form, r) == GPROJ_OK);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && gproj_get_loads(form, f, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_get_reactions(form, r, NULL) == GPROJ_OK);
     for (i = 0; i < n; ++i) size = fmax(size, fabs(truth[i]));
     if (size == 0) size = 1;
     for (i = 0; i < n; ++i) GPROJT_NEAR(f[i], truth[i], 1e-12 * size);
     unbalance = gprojt_unbalance(mesh, w, truth, pins.item, pins.count);
     if (!(unbalance <= tolerance)) printf("    unbalance %g\n", unbalance);
     GPROJT_CHECK(unbalance <= tolerance);
-    GPROJT_NEAR(gproj_measure_forces(form).residual, unbalance, 1e-12 + 1e-6 * unbalance);
+    GPROJT_NEAR(gproj_measure_forces(form, NULL).residual, unbalance, 1e-12 + 1e-6 * unbalance);
     for (i = 0; unbalance <= tolerance && i < mesh->vertex_count; ++i) {
         const double *p = mesh->position + 3 * i;
         double both[3];
@@ -182,7 +182,7 @@ static double gprojt_check_balance(gproj_form *form, const gproj_loads *loads, d
 /* The least and the largest force density of the edges that have one. */
 static void gprojt_range(const gproj_form *form, double range[2]) {
     double *w = gprojt_numbers(gprojt_inside_mesh(form)->edge_count);
-    gproj_get_forces(form, w);
+    gproj_get_forces(form, w, NULL);
     range[0] = HUGE_VAL, range[1] = -HUGE_VAL;
     for (int32_t e = 0; e < gprojt_inside_mesh(form)->edge_count; ++e) {
         if (gprojt_inside_force(form, e) < 0) continue;
@@ -229,7 +229,7 @@ GPROJT_TEST(gradients) {
         GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, sections, -1, 2, 1) >= 0);
         GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
         for (e = 0; e < mesh->edge_count; ++e) w[e] = 4 * gprojt_uniform(&seed) - 2;
-        GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+        GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
         GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -360,7 +360,7 @@ GPROJT_TEST(force_density_method) {
                 f[i] = way ? 2 * gprojt_uniform(&seed) - 1 : i % 3 == 2 ? -2 : 0;
             loads.point_load = f;
             form = gprojt_pinned_form(mesh, NULL, &loads);
-            GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+            GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
             gprojt_freeze_forces(form);
             result = gproj_solve(form, 20, NULL);
             GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
@@ -458,19 +458,19 @@ GPROJT_TEST(tents) {
             f[3 * legs + 2] = -load;
             loads.point_load = f;
             form = gprojt_pinned_form(mesh, NULL, &loads);
-            GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK && residual[legs] < 1e-9);
+            GPROJT_CHECK(gproj_find_forces(form, w, residual, NULL) == GPROJ_OK && residual[legs] < 1e-9);
             for (e = 0; e < mesh->edge_count; ++e) {
                 bool leg = mesh->origin[2 * e] == legs || mesh->origin[2 * e + 1] == legs;
                 GPROJT_NEAR(w[e], leg ? density : 0, legs == 3 ? 1e-9 : 1e-3); /* more legs: one of many solutions */
             }
-            GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && w[0] == 0);
+            GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && w[0] == 0);
             gprojt_add_group(gproj_form_system(form), "stay", GPROJ_CONSTRAINT, 1);
             gproj_add_fixed(form, 1, &legs, 1);
             GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
-            gproj_get_reactions(form, reaction);
+            gproj_get_reactions(form, reaction, NULL);
             GPROJT_NEAR(reaction[2], load / legs, close);
             GPROJT_NEAR(reaction[0], -load / legs / h * r, close); /* the thrust goes out, the support holds it in */
-            m = gproj_measure_forces(form);
+            m = gproj_measure_forces(form, NULL);
             GPROJT_CHECK(m.residual < 1e-11 && m.residual_vertex == legs);
             GPROJT_NEAR(m.min_density, density, close);
             GPROJT_NEAR(m.max_density, density, close);
@@ -500,7 +500,7 @@ GPROJT_TEST(tripods) {
         for (k = 0; k < 3; ++k) b[3 * k] = -f[9 + k];
         GPROJT_REQUIRE(gprojt_eliminate(3, a, b));
         form = gprojt_pinned_form(mesh, NULL, &loads);
-        GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK);
+        GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK);
         for (e = 0; e < mesh->edge_count; ++e) {
             int32_t foot = mesh->origin[2 * e] + mesh->origin[2 * e + 1] - 3;
             if (mesh->origin[2 * e] == 3 || mesh->origin[2 * e + 1] == 3)
@@ -517,7 +517,7 @@ static void gprojt_stress_range(const gproj_form *form, const double *sections, 
     const gproj_mesh *mesh = gprojt_inside_mesh(form);
     double *w = gprojt_numbers(mesh->edge_count);
     int32_t e;
-    gproj_get_forces(form, w);
+    gproj_get_forces(form, w, NULL);
     range[0] = HUGE_VAL, range[1] = -HUGE_VAL;
     for (e = 0; e < mesh->edge_count; ++e) {
         double stress = w[e] * gprojt_edge_length(mesh, e) / (sections ? sections[e] : 1);
@@ -572,7 +572,7 @@ static double gprojt_force_spread(const gproj_form *form) {
     const gproj_mesh *mesh = gprojt_inside_mesh(form);
     double *w = gprojt_numbers(mesh->edge_count), differences = 0, squares = 0;
     int32_t h;
-    gproj_get_forces(form, w);
+    gproj_get_forces(form, w, NULL);
     for (h = 0; h < mesh->halfedge_count; ++h) {
         int32_t opposite = mesh->next[mesh->next[h]];
         double a = w[h / 2] * gprojt_edge_length(mesh, h / 2);
@@ -599,7 +599,7 @@ GPROJT_TEST(fair_forces) {
         loads.density = 1;
         form = gprojt_pinned_form(mesh, NULL, &loads);
         for (e = 0; e < mesh->edge_count; ++e) w[e] = 3 * (0.7 + 0.6 * gprojt_uniform(&seed));
-        gproj_set_forces(form, w);
+        gproj_set_forces(form, w, NULL);
         if (fair) GPROJT_CHECK(gproj_add_force_fairness(form, 0.3) >= 0);
         GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
         gprojt_check_balance(form, &loads, 1e-10);
@@ -657,8 +657,8 @@ GPROJT_TEST(rollers_take_nothing_along_their_slides) {
     result = gproj_solve(form, 40, NULL);
     if (result.outcome != GPROJ_CONVERGED) printf("    %s\n", result.message);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
-    gproj_get_forces(form, w);
-    gproj_get_reactions(form, r);
+    gproj_get_forces(form, w, NULL);
+    gproj_get_reactions(form, r, NULL);
     f = gprojt_true_loads(mesh, &loads);
     sum = gprojt_sums(mesh, w, f);
     for (i = 0; i < walls.count; ++i)
@@ -674,7 +674,7 @@ GPROJT_TEST(rollers_take_nothing_along_their_slides) {
         if (slides[i]) GPROJT_CHECK(r[3 * walls.item[i] + slides[i] - 1] == 0);
     GPROJT_CHECK(worst < 1e-10);
     for (i = 0; i < mesh->edge_count; ++i) ties += w[i] != 0 && (mesh->face[2 * i] < 0 || mesh->face[2 * i + 1] < 0);
-    GPROJT_CHECK(ties > 4 && gproj_measure_forces(form).residual < 1e-10);
+    GPROJT_CHECK(ties > 4 && gproj_measure_forces(form, NULL).residual < 1e-10);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(walls.item), free(slides), free(w), free(sum), free(f), free(r);
@@ -745,7 +745,7 @@ static void gprojt_check_optimal(gproj_form *form, const gproj_loads *loads, int
     double size = 0;
     gprojt_list pins = gprojt_boundary(mesh);
     int32_t v, e, k;
-    GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK);
+    GPROJT_CHECK(gproj_find_forces(form, w, residual, NULL) == GPROJ_OK);
     f = gprojt_true_loads(mesh, loads);
     sum = gprojt_sums(mesh, w, f);
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -810,19 +810,19 @@ GPROJT_TEST(best_forces_within_active_bounds) {
     form = gprojt_pinned_form(mesh, NULL, &loads);
     own = gprojt_add_group(gproj_form_system(form), "compression", GPROJ_BOUND, 1);
     gprojt_add_linear(gproj_form_system(form), own, 0, 1, 100, 1000000);
-    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK);
     for (e = 0; e < mesh->edge_count; ++e)
         if (least < 0 || w[e] < w[least]) least = e;
     GPROJT_REQUIRE(w[least] < -0.1);
     group = gproj_add_compression(form, 1, &least, 1);
-    GPROJT_CHECK(group >= 0 && gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] >= 0);
+    GPROJT_CHECK(group >= 0 && gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK && w[least] >= 0);
     gproj_set_element_weights(form, group, 1, &least, &none);
-    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] < -0.1);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK && w[least] < -0.1);
     none = 1;
     gproj_set_element_weights(form, group, 1, &least, &none);
-    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] >= 0);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK && w[least] >= 0);
     gproj_set_schedule(form, group, schedule);
-    GPROJT_CHECK(gproj_find_forces(form, w, NULL) == GPROJ_OK && w[least] < -0.1);
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK && w[least] < -0.1);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(w);
@@ -845,7 +845,7 @@ GPROJT_TEST(funicular_shapes_and_plates) {
             loads.point_load = f;
             form = gprojt_pinned_form(mesh, NULL, &loads);
             gproj_add_compression(form, mesh->edge_count, NULL, 1);
-            GPROJT_CHECK(gproj_find_forces(form, w, residual) == GPROJ_OK);
+            GPROJT_CHECK(gproj_find_forces(form, w, residual, NULL) == GPROJ_OK);
             for (i = 0; i < mesh->vertex_count; ++i) {
                 bool carried = !flat || gproj_mesh_is_boundary_vertex(mesh, i);
                 GPROJT_NEAR(residual[i], carried ? 0 : 1, 1e-7);
@@ -873,7 +873,7 @@ GPROJT_TEST(plates_are_infeasible) {
         for (v = 0; v < mesh->vertex_count; ++v) all[v] = v;
         gproj_add_fixed(form, mesh->vertex_count, all, 1);
         result = gproj_solve(form, 30, NULL);
-        gproj_get_forces(form, w);
+        gproj_get_forces(form, w, NULL);
         f = gprojt_true_loads(mesh, &loads);
         unbalance = gprojt_unbalance(mesh, w, f, pins.item, pins.count);
         /* the residual, from outside: how far a coordinate is off, or a force, in the form's units */
@@ -885,7 +885,7 @@ GPROJT_TEST(plates_are_infeasible) {
         }
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && result.outcome != GPROJ_FAILED && result.residual > 1e-3);
         GPROJT_NEAR(result.residual, residual, 1e-6 * residual);
-        GPROJT_NEAR(gproj_measure_forces(form).residual, unbalance, 1e-9 + 1e-9 * unbalance);
+        GPROJT_NEAR(gproj_measure_forces(form, NULL).residual, unbalance, 1e-9 + 1e-9 * unbalance);
         GPROJT_CHECK(unbalance > 1e-6 && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -907,21 +907,21 @@ GPROJT_TEST(forces_are_kept_and_set) {
     loads.density = 1;
     form = gprojt_pinned_form(mesh, NULL, &loads);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
-    GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == 0);
     for (e = 0; e < mesh->edge_count; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : 1e3 * gprojt_uniform(&seed);
-    GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK && gproj_get_forces(form, again) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gproj_get_forces(form, again, NULL) == GPROJ_OK);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-12 * 1e3);
-    GPROJT_CHECK(gproj_set_forces(form, NULL) == GPROJ_OK && gproj_get_forces(form, again) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_forces(form, NULL, NULL) == GPROJ_OK && gproj_get_forces(form, again, NULL) == GPROJ_OK);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(again[e] == 0);
     GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
     solved = gprojt_keep(mesh);
-    gproj_get_forces(form, w);
+    gproj_get_forces(form, w, NULL);
     for (e = 0; e < mesh->edge_count; ++e) size = fmax(size, fabs(w[e]));
 
     /* a second solve goes on from there: nothing is left to do */
     result = gproj_solve(form, 30, NULL);
-    gproj_get_forces(form, again);
+    gproj_get_forces(form, again, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 1);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-10 * size);
     GPROJT_CHECK(gprojt_largest_move(mesh->position, solved, mesh->vertex_count) < 1e-9);
@@ -930,7 +930,7 @@ GPROJT_TEST(forces_are_kept_and_set) {
     gproj_form_destroy(form);
     form = gprojt_pinned_form(mesh, NULL, &loads);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
-    gproj_set_forces(form, w);
+    gproj_set_forces(form, w, NULL);
     result = gproj_solve(form, 30, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 1);
     gproj_form_destroy(form);
@@ -941,10 +941,10 @@ GPROJT_TEST(forces_are_kept_and_set) {
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_solve(form, 30, NULL);
     gprojt_put_back(mesh, kept);
-    gproj_set_forces(form, NULL);
+    gproj_set_forces(form, NULL, NULL);
     GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(mesh->position, solved, mesh->vertex_count) < 1e-9);
-    gproj_get_forces(form, again);
+    gproj_get_forces(form, again, NULL);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_NEAR(again[e], w[e], 1e-8 * size);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -965,8 +965,8 @@ GPROJT_TEST(forces_of_any_size_are_set) {
         loads.density = 1;
         form = gprojt_pinned_form(mesh, NULL, &loads);
         for (e = 0; e < mesh->edge_count; ++e) w[e] = sizes[i];
-        GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
-        gproj_get_forces(form, w);
+        GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
+        gproj_get_forces(form, w, NULL);
         for (e = 0; e < mesh->edge_count; ++e)
             if (gprojt_inside_force(form, e) >= 0) GPROJT_NEAR(w[e], sizes[i], 1e-12 * sizes[i]);
         result = gproj_solve(form, 5, NULL);
@@ -997,7 +997,7 @@ GPROJT_TEST(imbalance_is_a_proof) {
             form = gprojt_pinned_form(mesh, NULL, &loads);
             if (sign > 0) gproj_add_compression(form, mesh->edge_count, NULL, 1);
             if (sign < 0) gproj_add_tension(form, mesh->edge_count, NULL, 1);
-            GPROJT_CHECK(gproj_find_imbalance(form, d) == GPROJ_OK);
+            GPROJT_CHECK(gproj_find_imbalance(form, d, NULL) == GPROJ_OK);
             f = gprojt_true_loads(mesh, &loads);
             for (k = 0; k < 3 * mesh->vertex_count; ++k) {
                 if (gprojt_listed(pins.item, pins.count, k / 3)) GPROJT_CHECK(d[k] == 0);
@@ -1012,12 +1012,12 @@ GPROJT_TEST(imbalance_is_a_proof) {
                     along += (mesh->position[3 * i + k] - mesh->position[3 * j + k]) * (d[3 * i + k] - d[3 * j + k]);
                 GPROJT_CHECK(sign * along >= -1e-8);
             }
-            GPROJT_CHECK(gproj_find_imbalance(form, NULL) == GPROJ_ERROR_ARGUMENT);
+            GPROJT_CHECK(gproj_find_imbalance(form, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
             free(d), free(f), free(pins.item);
         }
-    GPROJT_CHECK(gproj_find_imbalance(NULL, NULL) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_find_imbalance(NULL, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
 }
 
 /* The verdict of a vault under its weight: faces flat or not, some signs, everything fixed or only the boundary, pinned or
@@ -1126,7 +1126,7 @@ GPROJT_TEST(weights_switch_groups_off_and_on) {
     /* off: nothing moves, there are no forces */
     GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
-    gproj_get_forces(form, w);
+    gproj_get_forces(form, w, NULL);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == 0);
     /* equilibrium, then compression as well */
     gproj_set_schedule(form, equilibrium, on);
@@ -1198,10 +1198,10 @@ GPROJT_TEST(isolated_vertices) {
     for (v = 0; v < mesh->vertex_count; ++v) f[3 * v + 2] = v == 16 ? -100 : -1;
     loads.point_load = f, loads.snow = 1, loads.density = 1;
     form = gprojt_pinned_form(mesh, NULL, &loads);
-    GPROJT_CHECK(gproj_find_forces(form, NULL, residual) == GPROJ_OK && residual[16] == 0);
+    GPROJT_CHECK(gproj_find_forces(form, NULL, residual, NULL) == GPROJ_OK && residual[16] == 0);
     GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome == GPROJ_CONVERGED);
-    GPROJT_CHECK(gproj_get_reactions(form, reaction) == GPROJ_OK && reaction[3 * 16 + 2] == 0);
-    m = gproj_measure_forces(form);
+    GPROJT_CHECK(gproj_get_reactions(form, reaction, NULL) == GPROJ_OK && reaction[3 * 16 + 2] == 0);
+    m = gproj_measure_forces(form, NULL);
     GPROJT_CHECK(m.residual < 1e-10 && m.residual_vertex < 16);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -1227,13 +1227,13 @@ GPROJT_TEST(supports_only) {
     GPROJT_CHECK(gproj_add_compression(form, mesh->edge_count, NULL, 1) >= 0);
     GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, 0, 1, 1) >= 0);
     GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
-    GPROJT_CHECK(gproj_find_forces(form, w, r) == GPROJ_OK && w[0] == 0 && r[0] == 0);
+    GPROJT_CHECK(gproj_find_forces(form, w, r, NULL) == GPROJ_OK && w[0] == 0 && r[0] == 0);
     GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
-    GPROJT_CHECK(gproj_get_reactions(form, r) == GPROJ_OK);
+    GPROJT_CHECK(gproj_get_reactions(form, r, NULL) == GPROJ_OK);
     f = gprojt_true_loads(mesh, &loads);
     for (v = 0; v < 3 * mesh->vertex_count; ++v) GPROJT_NEAR(r[v], -f[v], 1e-12);
-    m = gproj_measure_forces(form);
+    m = gproj_measure_forces(form, NULL);
     GPROJT_CHECK(m.residual == 0 && m.residual_vertex == -1 && m.max_force == 0 && m.load_path == 0);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -1351,28 +1351,106 @@ GPROJT_TEST(refusals_of_equilibrium) {
     free(density), free(point);
 }
 
+enum {
+    GPROJT_SET_FORCES,
+    GPROJT_FIND_FORCES,
+    GPROJT_FIND_IMBALANCE,
+    GPROJT_GET_LOADS,
+    GPROJT_GET_REACTIONS,
+    GPROJT_MEASURE_FORCES,
+    GPROJT_QUESTIONS
+};
+
+static gproj_code gprojt_ask_form(gproj_form *form, int question, double *w, gproj_error *error) {
+    gproj_code code = error ? error->code : GPROJ_OK;
+    switch (question) {
+    case GPROJT_SET_FORCES: return gproj_set_forces(form, w, error);
+    case GPROJT_FIND_FORCES: return gproj_find_forces(form, w, NULL, error);
+    case GPROJT_FIND_IMBALANCE: return gproj_find_imbalance(form, w, error);
+    case GPROJT_GET_LOADS: return gproj_get_loads(form, w, error);
+    case GPROJT_GET_REACTIONS: return gproj_get_reactions(form, w, error);
+    default:
+        if (gproj_measure_forces(form, error).residual_vertex < 0) code = error ? error->code : GPROJ_ERROR_STATE;
+        return code;
+    }
+}
+
+/* A refused question says why, and the form does not know of it. */
+static void gprojt_check_question(gproj_form *form, int question, double *w, gproj_code code, gproj_place place,
+                                  int64_t index, const char *says) {
+    gproj_error error;
+    GPROJT_CHECK(gprojt_ask_form(form, question, w, &error) == code);
+    GPROJT_CHECK(error.code == code && error.place == place && error.index == index && strstr(error.message, says));
+    if (!strstr(error.message, says)) printf("    question %d: %s\n", question, error.message);
+    if (question != GPROJT_MEASURE_FORCES) GPROJT_CHECK(gprojt_ask_form(form, question, w, NULL) == code);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+}
+
+GPROJT_TEST(refused_questions_leave_the_form) {
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
+    double *w = gprojt_numbers(3 * mesh->vertex_count + mesh->edge_count), *kept, *again, x = mesh->position[5];
+    gproj_form *form = gprojt_form_with_equilibrium(mesh);
+    gproj_error error;
+    int32_t e, inner = 0;
+    kept = gprojt_numbers(mesh->edge_count), again = gprojt_numbers(mesh->edge_count);
+    GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_get_forces(form, kept, &error) == GPROJ_OK && error.code == GPROJ_OK && error.message[0] == 0);
+    while (inner < mesh->edge_count && kept[inner] == 0) ++inner;
+    /* 1. Numbers that are none: the forces are as they were. */
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1;
+    w[inner] = NAN;
+    gprojt_check_question(form, GPROJT_SET_FORCES, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, inner,
+                          "the density of edge");
+    gproj_get_forces(form, again, NULL);
+    GPROJT_CHECK(memcmp(again, kept, (size_t)mesh->edge_count * sizeof *kept) == 0);
+    /* 2. A position that is none: also before a drag. */
+    mesh->position[5] = INFINITY;
+    gprojt_check_question(form, GPROJT_FIND_FORCES, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 1, "vertex 1");
+    gprojt_check_question(form, GPROJT_FIND_IMBALANCE, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 1, "vertex 1");
+    {
+        int32_t v = 5;
+        gproj_handles handles = {1, NULL, &v, NULL, NULL};
+        GPROJT_CHECK(!gproj_drag_begin(form, &handles, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    }
+    mesh->position[5] = x;
+    /* 3. No array, no form. */
+    gprojt_check_question(form, GPROJT_FIND_IMBALANCE, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
+    gprojt_check_question(form, GPROJT_GET_LOADS, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
+    gprojt_check_question(form, GPROJT_GET_REACTIONS, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
+    GPROJT_CHECK(gproj_get_forces(form, NULL, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "no array"));
+    for (e = 0; e < GPROJT_QUESTIONS; ++e)
+        GPROJT_CHECK(gprojt_ask_form(NULL, e, w, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "no form"));
+    /* 4. The form goes on. */
+    GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+    /* 5. After an error of the form questions tell it. */
+    gproj_add_planarity(form, -1);
+    for (e = 0; e < GPROJT_QUESTIONS; ++e)
+        GPROJT_CHECK(gprojt_ask_form(form, e, w, &error) == gproj_form_error(form)->code &&
+                     strcmp(error.message, gproj_form_error(form)->message) == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w), free(kept), free(again);
+}
+
 GPROJT_TEST(refusals_without_equilibrium) {
     gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
     double *w = gprojt_numbers(3 * mesh->vertex_count + mesh->edge_count);
     int i;
-    for (i = 0; i < 7; ++i) {
+    for (i = 0; i < 4; ++i) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         bool refused = i == 0   ? gproj_add_compression(form, 1, NULL, 1) == -1
                        : i == 1 ? gproj_add_tension(form, 1, NULL, 1) == -1
                        : i == 2 ? gproj_add_stress_bounds(form, 1, NULL, NULL, 0, 1, 1) == -1
-                       : i == 3 ? gproj_add_force_fairness(form, 1) == -1
-                       : i == 4 ? gproj_set_forces(form, w) == GPROJ_ERROR_STATE
-                       : i == 5 ? gproj_find_forces(form, w, w) == GPROJ_ERROR_STATE
-                                : gproj_measure_forces(form).residual_vertex == -1;
+                                : gproj_add_force_fairness(form, 1) == -1;
         gprojt_check_refused(form, refused, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1);
     }
     {
         gproj_form *form = gproj_form_create(mesh, NULL);
         w[0] = 1;
-        GPROJT_CHECK(gproj_get_forces(form, w) == GPROJ_OK && w[0] == 0);
-        GPROJT_CHECK(gproj_get_loads(form, w) == GPROJ_ERROR_STATE &&
-                     gproj_get_reactions(form, w) == GPROJ_ERROR_STATE);
-        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && w[0] == 0);
+        for (i = 0; i < GPROJT_QUESTIONS; ++i)
+            gprojt_check_question(form, i, w, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "gproj_add_equilibrium before");
         gproj_form_destroy(form);
     }
     gproj_mesh_destroy(mesh);
@@ -1383,14 +1461,12 @@ GPROJT_TEST(refusals_of_bounds) {
     static const int32_t far[2] = {0, 100000};
     static const double none[2] = {1, 0}, infinite[2] = {INFINITY, 1};
     gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
-    double *w = gprojt_numbers(mesh->edge_count);
     int i;
-    w[6] = NAN;
-    for (i = 0; i < 13; ++i) {
+    for (i = 0; i < 12; ++i) {
         gproj_form *form = gprojt_form_with_equilibrium(mesh);
-        bool refused = false, edge = i < 2 || i == 5 || i == 6 || i == 10 || i == 12;
-        int64_t index = i < 2 || i == 10 ? 100000 : i == 5 ? 1 : i == 6 ? 0 : i == 12 ? 6 : -1;
-        gproj_code code = i < 2 || i == 10 ? GPROJ_ERROR_INDEX : i == 12 ? GPROJ_ERROR_NUMBER : GPROJ_ERROR_ARGUMENT;
+        bool refused = false, edge = i < 2 || i == 5 || i == 6 || i == 10;
+        int64_t index = i < 2 || i == 10 ? 100000 : i == 5 ? 1 : i == 6 ? 0 : -1;
+        gproj_code code = i < 2 || i == 10 ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT;
         if (i == 0) refused = gproj_add_compression(form, 2, far, 1) == -1;
         if (i == 1) refused = gproj_add_tension(form, 2, far, 1) == -1;
         if (i == 2) refused = gproj_add_compression(form, -1, far, 1) == -1;
@@ -1403,12 +1479,10 @@ GPROJT_TEST(refusals_of_bounds) {
         if (i == 9) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, -INFINITY, -INFINITY, 1) == -1;
         if (i == 10) refused = gproj_add_stress_bounds(form, 2, far, NULL, 0, 1, 1) == -1;
         if (i == 11) refused = gproj_add_stress_bounds(form, -2, far, NULL, 0, 1, 1) == -1;
-        if (i == 12) refused = gproj_set_forces(form, w) == GPROJ_ERROR_NUMBER;
         if (!refused || gproj_form_error(form)->code != code) printf("    refusal %d\n", i);
         gprojt_check_refused(form, refused, code, edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_NONE, index);
     }
     gproj_mesh_destroy(mesh);
-    free(w);
 }
 
 GPROJT_TEST(no_form) {
@@ -1419,12 +1493,12 @@ GPROJT_TEST(no_form) {
                  gproj_add_compression(NULL, 0, NULL, 1) == -1);
     GPROJT_CHECK(gproj_add_tension(NULL, 0, NULL, 1) == -1 && gproj_add_force_fairness(NULL, 1) == -1);
     GPROJT_CHECK(gproj_add_stress_bounds(NULL, 0, NULL, NULL, 0, 1, 1) == -1);
-    GPROJT_CHECK(gproj_get_forces(NULL, w) == GPROJ_ERROR_ARGUMENT &&
-                 gproj_set_forces(NULL, w) == GPROJ_ERROR_ARGUMENT);
-    GPROJT_CHECK(gproj_get_loads(NULL, w) == GPROJ_ERROR_ARGUMENT &&
-                 gproj_get_reactions(NULL, w) == GPROJ_ERROR_ARGUMENT);
-    GPROJT_CHECK(gproj_find_forces(NULL, w, w) == GPROJ_ERROR_ARGUMENT);
-    GPROJT_CHECK(gproj_measure_forces(NULL).residual_vertex == -1);
+    GPROJT_CHECK(gproj_get_forces(NULL, w, NULL) == GPROJ_ERROR_ARGUMENT &&
+                 gproj_set_forces(NULL, w, NULL) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_get_loads(NULL, w, NULL) == GPROJ_ERROR_ARGUMENT &&
+                 gproj_get_reactions(NULL, w, NULL) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_find_forces(NULL, w, w, NULL) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_measure_forces(NULL, NULL).residual_vertex == -1);
 }
 
 /* -- memory, workers -- */
@@ -1438,23 +1512,27 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     gproj_loads loads = gprojt_no_loads();
     gproj_form *form;
     gproj_result result;
-    bool whole;
-    int32_t i;
+    gproj_error error;
+    bool found, whole;
+    int32_t i, none = 0;
     for (i = 0; i < mesh->vertex_count; ++i) f[3 * i + 2] = -1;
     for (i = 0; i < mesh->edge_count; ++i) density[i] = 1;
     loads.edge_density = density, loads.point_load = f, loads.snow = 1, loads.area_load = 1;
     form = gprojt_pinned_form(mesh, host, &loads);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
-    gproj_add_tension(form, 0, NULL, 1);
+    gproj_add_tension(form, 0, &none, 1);
     gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
     gproj_add_force_fairness(form, 0.1);
-    gproj_find_forces(form, w, NULL);
-    if (form) gproj_get_reactions(form, r);
+    found = gproj_find_forces(form, w, NULL, &error) == GPROJ_OK;
+    GPROJT_CHECK(found || !form || error.code == GPROJ_ERROR_MEMORY);
+    if (form) gproj_get_reactions(form, r, NULL);
     result = gproj_solve(form, 3, NULL);
-    if (form) gproj_get_reactions(form, r);
-    whole = gproj_measure_forces(form).residual_vertex >= 0;
+    if (form) gproj_get_reactions(form, r, NULL);
+    whole = gproj_measure_forces(form, NULL).residual_vertex >= 0;
     GPROJT_CHECK(whole || !form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
-    GPROJT_CHECK(whole || result.outcome == GPROJ_FAILED || failing->calls == failing->fail_at);
+    GPROJT_CHECK(!whole || found || result.outcome != GPROJ_FAILED); /* without memory for the question it is solved */
+    whole = whole && found;
+    GPROJT_CHECK(whole || !found || result.outcome == GPROJ_FAILED || failing->calls == failing->fail_at);
     if (result.outcome == GPROJ_FAILED) GPROJT_CHECK(gprojt_unmoved(mesh, before));
     gprojt_put_back(mesh, before);
     gproj_form_destroy(form);
@@ -1482,7 +1560,7 @@ GPROJT_TEST(same_bits_for_all_workers) {
         gproj_add_compression(form, mesh->edge_count, NULL, 1);
         gproj_add_planarity(form, 1);
         gproj_solve(form, 8, NULL);
-        gproj_get_forces(form, w);
+        gproj_get_forces(form, w, NULL);
         if (crew == 0) first[0] = gprojt_keep(mesh), first[1] = w;
         GPROJT_CHECK(gprojt_unmoved(mesh, first[0]));
         GPROJT_CHECK(!memcmp(first[1], w, (size_t)mesh->edge_count * sizeof *w));
@@ -1512,7 +1590,8 @@ GPROJT_TEST(a_point_is_no_equilibrium) {
         if (!wish) gproj_add_fixed_corners(form, 1);
         result = gproj_solve(form, 25, NULL);
         GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !wish);
-        GPROJT_CHECK(wish || gproj_measure_forces(form).residual < 1e-9); /* a point has no loads to be balanced */
+        GPROJT_CHECK(wish ||
+                     gproj_measure_forces(form, NULL).residual < 1e-9); /* a point has no loads to be balanced */
         GPROJT_CHECK(wish == (strstr(result.message, "shrunk to a point") != NULL));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -1529,9 +1608,9 @@ GPROJT_TEST(huge_forces_are_no_equilibrium) {
     loads.density = 1;
     form = gprojt_pinned_form(mesh, NULL, &loads);
     for (e = 0; e < mesh->edge_count; ++e) w[e] = 1e100;
-    GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome != GPROJ_CONVERGED);
-    GPROJT_CHECK(gproj_set_forces(form, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_set_forces(form, NULL, NULL) == GPROJ_OK);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(w);
@@ -1549,7 +1628,7 @@ GPROJT_TEST(loads_of_any_size) {
         gproj_form *form;
         loads.density = size[i];
         form = gprojt_pinned_form(mesh, NULL, &loads);
-        GPROJT_CHECK(gproj_find_forces(form, w, NULL) == (refused ? GPROJ_ERROR_NUMBER : GPROJ_OK));
+        GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == (refused ? GPROJ_ERROR_NUMBER : GPROJ_OK));
         GPROJT_CHECK(gproj_solve(form, 25, NULL).outcome == (refused ? GPROJ_FAILED : GPROJ_CONVERGED));
         GPROJT_CHECK(refused == (strstr(gproj_form_error(form)->message, "too large") != NULL));
         gproj_form_destroy(form);
@@ -1596,6 +1675,7 @@ int main(void) {
     GPROJT_RUN(huge_forces_are_no_equilibrium);
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);
     GPROJT_RUN(no_form);

@@ -207,7 +207,7 @@ GPROJT_TEST(refused_arguments) {
                  strstr(error.message, "'abc' where an OFF"));
     GPROJT_CHECK(!gproj_mesh_load(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_mesh_save(NULL, "a.obj", &error) == GPROJ_ERROR_ARGUMENT);
-    GPROJT_CHECK(gproj_mesh_write(NULL, GPROJ_FORMAT_OBJ, gprojt_text_write, NULL) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_mesh_write(NULL, GPROJ_FORMAT_OBJ, gprojt_text_write, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
 }
 
 /* -- there and back -- */
@@ -218,13 +218,13 @@ static void gprojt_check_round_trip(const gproj_mesh *mesh, gproj_format format,
     gproj_mesh *back;
     memset(&text, 0, sizeof text);
     memset(&again, 0, sizeof again);
-    GPROJT_CHECK(gproj_mesh_write(mesh, format, gprojt_text_write, &text) == GPROJ_OK);
+    GPROJT_CHECK(gproj_mesh_write(mesh, format, gprojt_text_write, &text, NULL) == GPROJ_OK);
     back = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_DETECT, NULL, &error);
     if (!back) printf("  %s: %s\n", name, error.message);
     GPROJT_CHECK(back && back->reoriented_count == 0);
     if (back && (format == GPROJ_FORMAT_OBJ || !mesh->polyline_count)) GPROJT_CHECK(gprojt_same_mesh(back, mesh));
     if (back) {
-        GPROJT_CHECK(gproj_mesh_write(back, format, gprojt_text_write, &again) == GPROJ_OK);
+        GPROJT_CHECK(gproj_mesh_write(back, format, gprojt_text_write, &again, NULL) == GPROJ_OK);
         GPROJT_CHECK(again.size == text.size && !memcmp(again.text, text.text, text.size));
     }
     gproj_mesh_destroy(back);
@@ -263,20 +263,24 @@ GPROJT_TEST(round_trips) {
 GPROJT_TEST(writer_failures) {
     gprojt_soup s = gprojt_quad_grid(30, 30);
     gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    gproj_error error;
     gprojt_text text;
     long stop;
     memset(&text, 0, sizeof text);
     for (stop = 1; stop < 5; ++stop) {
         text.calls = 0, text.stop_at = stop;
-        GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, gprojt_text_write, &text) == GPROJ_ERROR_FILE);
+        GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, gprojt_text_write, &text, &error) == GPROJ_ERROR_FILE);
+        GPROJT_CHECK(error.code == GPROJ_ERROR_FILE && strstr(error.message, "has stopped"));
         GPROJT_CHECK(text.calls == stop); /* not called again */
     }
-    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_DETECT, gprojt_text_write, &text) == GPROJ_ERROR_ARGUMENT);
-    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, NULL, &text) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_DETECT, gprojt_text_write, &text, &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(error.message, "neither OBJ nor OFF"));
+    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, NULL, &text, NULL) == GPROJ_ERROR_ARGUMENT);
     mesh->position[7] = NAN;
     text.calls = 0;
-    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, gprojt_text_write, &text) == GPROJ_ERROR_NUMBER &&
+    GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, gprojt_text_write, &text, &error) == GPROJ_ERROR_NUMBER &&
                  !text.calls);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 2);
     free(text.text);
     gproj_mesh_destroy(mesh);
     gprojt_soup_free(&s);
@@ -439,7 +443,7 @@ GPROJT_TEST(mutated_texts) {
             gprojt_text text;
             gproj_format format = round & 1 ? GPROJ_FORMAT_OBJ : GPROJ_FORMAT_OFF;
             memset(&text, 0, sizeof text);
-            gproj_mesh_write(mesh, format, gprojt_text_write, &text);
+            gproj_mesh_write(mesh, format, gprojt_text_write, &text, NULL);
             for (k = 1 + gprojt_below(&state, 4); k > 0; --k) {
                 size_t at = (size_t)gprojt_below(&state, (int32_t)text.size);
                 static const char likely[] = "0123456789 -./\n\r\\#vfleOF";

@@ -141,7 +141,7 @@ static bool bench_solve_form(bench_form *f, int32_t iterations, bench_visit visi
     f->visit = visit;
     f->user = user;
     memcpy(f->mesh->position, f->start, 3 * (size_t)f->mesh->vertex_count * sizeof(double));
-    if (f->force) gproj_set_forces(f->form, f->force);
+    if (f->force) gproj_set_forces(f->form, f->force, NULL);
     result = gproj_solve(f->form, iterations, &options);
     if (result.seconds[GPROJ_PHASE_ANALYSE] > f->analyse_seconds)
         f->analyse_seconds = result.seconds[GPROJ_PHASE_ANALYSE];

@@ -395,12 +395,11 @@ static bool read_range(const char *value, tool_demand *range) {
            (first == 0 || rest == 0 || range->min <= range->max);
 }
 
-/* Reads bounds of lengths and areas: 0 is none. */
+/* Reads bounds of lengths and areas, which are never negative. */
 static bool set_range(tool *t, void *place, const char *name, const char *value) {
     tool_demand *range = (tool_demand *)place;
-    const char *comma = strchr(value, ',');
-    bool bounded = comma && comma[1] && comma[1] != '=';
-    return (read_range(value, range) && range->min >= 0 && range->max >= 0 && (!bounded || range->max > 0)) ||
+    range->min = 0, range->max = HUGE_VAL;
+    return (read_range(value, range) && range->min >= 0 && range->max > 0) ||
            fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX");
 }
 
@@ -1852,7 +1851,7 @@ static bool measure_imbalance(tool *t, double *of_faces) {
     const gproj_mesh *mesh = t->mesh;
     double *residual = (double *)take(t, (size_t)mesh->vertex_count, sizeof *residual);
     int32_t f, k;
-    bool good = residual && gproj_find_forces(t->form, NULL, residual) == GPROJ_OK;
+    bool good = residual && gproj_find_forces(t->form, NULL, residual, NULL) == GPROJ_OK;
     for (f = 0; good && f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         of_faces[f] = 0;
@@ -1870,7 +1869,7 @@ static bool measure_forces(tool *t) {
     t->force_in_edge = (double *)take(t, (size_t)mesh->edge_count, sizeof *t->force_in_edge);
     t->imbalance = (double *)take(t, (size_t)mesh->face_count, sizeof *t->imbalance);
     if (!t->density_of_edge || !t->force_in_edge || !t->imbalance) return false;
-    gproj_get_forces(t->form, t->density_of_edge);
+    gproj_get_forces(t->form, t->density_of_edge, NULL);
     for (e = 0; e < mesh->edge_count; ++e) {
         const double *a = mesh->position + 3 * (size_t)mesh->origin[2 * e],
                      *b = mesh->position + 3 * (size_t)mesh->origin[2 * e + 1];
@@ -1878,7 +1877,7 @@ static bool measure_forces(tool *t) {
         for (k = 0; k < 3; ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
         t->force_in_edge[e] = t->density_of_edge[e] * sqrt(square);
     }
-    t->forces = gproj_measure_forces(t->form);
+    t->forces = gproj_measure_forces(t->form, NULL);
     if (t->imbalance_before && !measure_imbalance(t, t->imbalance)) return false;
     return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
@@ -1955,12 +1954,12 @@ static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
     double begin = now(NULL), limit = how->time_budget;
     gproj_solve_options options = *how;
     options.time_budget = 0;
-    gproj_step_begin(t->form, t->iterations, &options);
+    gproj_solve_begin(t->form, t->iterations, &options, NULL);
     if (!restore(t)) return false;
-    if (!gproj_step_is_on(t->form)) gproj_step_begin(t->form, t->iterations, &options);
+    if (!gproj_solve_is_on(t->form)) gproj_solve_begin(t->form, t->iterations, &options, NULL);
     do {
-        t->result = gproj_step(t->form, 0);
-    } while (gproj_step_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
+        t->result = gproj_solve_advance(t->form, 0);
+    } while (gproj_solve_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
     return true;
 }
 
@@ -2126,7 +2125,7 @@ static gproj_code write_forces(tool *t, FILE *file) {
     double *load = (double *)take(t, 3 * (size_t)mesh->vertex_count, sizeof *load);
     int32_t i;
     if (!load) return GPROJ_ERROR_MEMORY;
-    gproj_get_loads(t->form, load);
+    gproj_get_loads(t->form, load, NULL);
     fputs("kind,i,j or fx,w or fy,fz\n", file);
     for (i = 0; i < mesh->edge_count; ++i) {
         fprintf(file, "edge,%ld,%ld,", (long)mesh->origin[2 * i], (long)mesh->origin[2 * i + 1]);
@@ -2150,7 +2149,7 @@ static bool write_piece(void *user, const char *text, size_t size) {
 
 static gproj_code write_as(const gproj_mesh *mesh, const char *path, FILE *file) {
     gproj_format format = has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-    return gproj_mesh_write(mesh, format, write_piece, file);
+    return gproj_mesh_write(mesh, format, write_piece, file, NULL);
 }
 
 static gproj_code write_mesh(tool *t, FILE *file) { return write_as(t->mesh, t->output[OUTPUT_MESH].path, file); }

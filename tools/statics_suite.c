@@ -119,7 +119,7 @@ static suite_end run(gproj_mesh *mesh, double *original, const suite_case *what,
     end.residual = end.result.residual;
     end.moved = gproj_measure(mesh, original, NULL).displacement_mean;
     end.spoiled = count_spoiled(mesh, original);
-    if (left && gproj_find_imbalance(form, left) == GPROJ_OK)
+    if (left && gproj_find_imbalance(form, left, NULL) == GPROJ_OK)
         for (v = 0; v < 3 * mesh->vertex_count; ++v) end.left = fmax(end.left, fabs(left[v]));
     free(left);
     gproj_form_destroy(form);
