@@ -7710,6 +7710,21 @@ typedef enum gproji_role {
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
 
+/* The variables in rows, row after row, each once in a row. */
+typedef struct gproji_locals {
+    int32_t *variable; /* in the order in which terms name them; compiled, narrow rows */
+    bool sorted;       /* may have the ascending order of `at` instead */
+    int32_t *at;       /* padded rows in the front for a narrow row's locals, ascending; see also >>schur */
+    double *gradient;  /* at the last evaluation */
+} gproji_locals;
+
+/* Tallies of a group at the last evaluation. */
+typedef struct gproji_tallies {
+    gproji_tally *part; /* tasks in the evaluation */
+    double weight;      /* the weight for which they were made */
+    int32_t first_task; /* in the evaluation under way */
+} gproji_tallies;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7724,9 +7739,11 @@ typedef struct gproji_group {
                         at the other nodes, as n'(v_i - v_j) does around a face */
     bool has_wide;    /* some rows are dense */
     gproji_role role;
-    double slack;        /* guard: steps may violate its rows by so much */
-    bool lazy;           /* a bound for whose sake a good step is not found again, however near steps lead */
-    int32_t activations; /* guard: how often dormant rows were activated */
+    struct {
+        double slack;        /* steps may violate its rows by so much */
+        int32_t activations; /* how often dormant rows were activated */
+    } guard;
+    bool lazy; /* a bound for whose sake a good step is not found again, however near steps lead */
 
     int32_t row_count;
     gproji_row *row;
@@ -7734,18 +7751,13 @@ typedef struct gproji_group {
     bool common;       /* rows share terms, which are not to be written then (gproji_own_terms) */
     size_t term_count; /* all terms; compiled, with the copies behind the first `sources` */
     size_t sources;
-    gproji_share *share;     /* rows; NULL: all factors are 1 */
-    int32_t *local_variable; /* row after row, each once, in the order in which terms name them; compiled, narrow */
-    bool sorted;             /* rows may have the ascending order of `local_at` instead */
+    gproji_share *share; /* rows; NULL: all factors are 1 */
     struct {
         size_t row, term, share, local;
     } capacity; /* entries that `row`, `term`, `share`, `local_variable` have room for */
 
-    int32_t *local_at;             /* padded rows in the front for a narrow row's locals, ascending; see also >>schur */
-    double *local_gradient;        /* at the last evaluation */
-    gproji_tally *tally;           /* tasks in the evaluation */
-    double tallied;                /* the weight for which `tally` was made */
-    int32_t first_task;            /* in the evaluation under way */
+    gproji_locals local;
+    gproji_tallies tally;
     gproji_multiplier *multiplier; /* rows; NULL before a solve for the nearest point */
 } gproji_group;
 
@@ -7822,6 +7834,42 @@ typedef struct gproji_wide {
     int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
 } gproji_wide;
 
+/* Blocks of variables; lists by variable. */
+typedef struct gproji_blocks {
+    int32_t *first;     /* the first variable in the same block */
+    uint8_t *joined;    /* of a first one: has a narrow row several variables in its block? */
+    uint8_t *auxiliary; /* local unknown, eliminated within an element and not regularised? */
+} gproji_blocks;
+
+/* Local numbers while a row is added. */
+typedef struct gproji_naming {
+    int32_t *place; /* the first `count` variables: local number; else -1 */
+    int32_t count;
+} gproji_naming;
+
+/* Nodes of the adjacency graph, once compiled. */
+typedef struct gproji_nodes {
+    int32_t count;
+    int32_t *of;       /* variables: node */
+    int32_t *first;    /* count + 1 (taken: variables + 1): first variable in each node, and the end */
+    int32_t variables; /* variable_count when this and the system's vectors were taken */
+} gproji_nodes;
+
+/* Vectors of a step, a number for each variable. */
+typedef struct gproji_vectors {
+    double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;     /* dx: the first column of `sides` */
+    double *saved;    /* x before the step */
+    double *sum;      /* nearest: steps in a slide, added up; NULL before */
+    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+} gproji_vectors;
+
+/* Rows in bounds that a step may violate. */
+typedef struct gproji_hinges {
+    gproji_hinge *list;
+    size_t taken; /* rows in all bounds */
+} gproji_hinges;
+
 struct gproj_system {
     gproji_heap own;
     gproj_error error;
@@ -7833,11 +7881,8 @@ struct gproj_system {
     double stiffness; /* in steps: factor on the weights of metric groups; 0: they rest */
     double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
-    int32_t *block;     /* variables: the first variable in the same block */
-    int32_t *place;     /* the first `places` variables: local number in a row being added; else -1 */
-    uint8_t *joined;    /* first variable in each block: has a narrow row several variables in it? */
-    uint8_t *auxiliary; /* variables: local unknown, eliminated within an element and not regularised? */
-    int32_t places;
+    gproji_blocks blocks;
+    gproji_naming naming;
     gproji_group *group;
     int32_t group_count;
     struct {
@@ -7847,20 +7892,13 @@ struct gproj_system {
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
-    bool evaluated;             /* compiled, and the rows have had values and gradients since */
-    int32_t compiled_variables; /* variable_count when the arrays below were taken */
-    int32_t node_count, wide_count;
-    int32_t *node;       /* variables: node */
-    int32_t *node_first; /* node_count + 1 (taken: variables + 1): first variable in each node, and the end */
+    bool evaluated; /* compiled, and the rows have had values and gradients since */
+    gproji_nodes nodes;
     gproji_front_rows fronts;
-    double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;     /* dx: the first column of `sides` */
-    double *saved;    /* x before the step */
-    double *sum;      /* nearest: steps in a slide, added up; NULL before */
-    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    gproji_vectors vector;
+    int32_t wide_count;
     gproji_wide wide;
-    gproji_hinge *hinge; /* bounds' rows that a step may violate */
-    size_t hinge_taken;  /* rows in all bounds */
+    gproji_hinges hinges;
     gproji_schur schur;
 };
 
@@ -7887,7 +7925,7 @@ GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t
 GPROJI_INLINE bool gproji_is_solving(const gproj_system *s) { return s->solving; }
 
 /* Two arrays for work, a number a variable, between solves of a compiled system: the step, and x before it. */
-GPROJI_INLINE double *gproji_spare(gproj_system *s, int32_t which) { return which ? s->saved : s->step; }
+GPROJI_INLINE double *gproji_spare(gproj_system *s, int32_t which) { return which ? s->vector.saved : s->vector.step; }
 
 /* Counts tasks in a group's evaluation. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
@@ -7913,7 +7951,7 @@ GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
         gproj_term *term = g->term + row->term, *end = term + row->terms;
-        int32_t *local = g->local_variable + row->local;
+        int32_t *local = g->local.variable + row->local;
         if (row->wide) continue;
         count = (int32_t)(row[1].local - row->local);
         for (i = 0; i < count; ++i) number[i] = -1, variable[i] = local[i];
@@ -7926,7 +7964,7 @@ GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
         row->term = row->source;
     }
     g->term_count = g->sources;
-    g->sorted = false;
+    g->local.sorted = false;
 }
 
 GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
@@ -7936,39 +7974,39 @@ GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
 
 /* Ends the compiled state and gives back all memory that compilation took. */
 GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
-    size_t n = (size_t)s->compiled_variables;
+    size_t n = (size_t)s->nodes.variables;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        if (g->sorted) gproji_unsort_locals(g);
-        gproji_give(&s->own, g->local_gradient, gproji_local_count(g), sizeof *g->local_gradient);
-        gproji_give(&s->own, g->local_at, gproji_local_count(g), sizeof *g->local_at);
-        gproji_give(&s->own, g->tally, (size_t)gproji_group_tasks(g), sizeof *g->tally);
+        if (g->local.sorted) gproji_unsort_locals(g);
+        gproji_give(&s->own, g->local.gradient, gproji_local_count(g), sizeof *g->local.gradient);
+        gproji_give(&s->own, g->local.at, gproji_local_count(g), sizeof *g->local.at);
+        gproji_give(&s->own, g->tally.part, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
         gproji_give(&s->own, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
-        g->local_gradient = NULL;
-        g->local_at = NULL;
-        g->tally = NULL;
+        g->local.gradient = NULL;
+        g->local.at = NULL;
+        g->tally.part = NULL;
         g->multiplier = NULL;
     }
-    gproji_give(&s->own, s->node, n, sizeof *s->node);
-    gproji_give(&s->own, s->node_first, n + 1, sizeof *s->node_first);
+    gproji_give(&s->own, s->nodes.of, n, sizeof *s->nodes.of);
+    gproji_give(&s->own, s->nodes.first, n + 1, sizeof *s->nodes.first);
     gproji_give(&s->own, s->fronts.start, s->fronts.count + 2, sizeof *s->fronts.start);
     gproji_give(&s->own, s->fronts.row, s->fronts.row_room, sizeof *s->fronts.row);
-    gproji_give(&s->own, s->gradient, n, sizeof *s->gradient);
-    gproji_give(&s->own, s->saved, n, sizeof *s->saved);
-    gproji_give(&s->own, s->sum, n, sizeof *s->sum);
-    gproji_give(&s->own, s->sides, (s->wide.taken + 1) * n, sizeof *s->sides);
+    gproji_give(&s->own, s->vector.gradient, n, sizeof *s->vector.gradient);
+    gproji_give(&s->own, s->vector.saved, n, sizeof *s->vector.saved);
+    gproji_give(&s->own, s->vector.sum, n, sizeof *s->vector.sum);
+    gproji_give(&s->own, s->vector.sides, (s->wide.taken + 1) * n, sizeof *s->vector.sides);
     gproji_give(&s->own, s->wide.matrix, s->wide.taken * s->wide.taken, sizeof *s->wide.matrix);
     gproji_give(&s->own, s->wide.vector, s->wide.taken, sizeof *s->wide.vector);
     gproji_give(&s->own, s->wide.residual, n, sizeof *s->wide.residual);
     gproji_give(&s->own, s->wide.balance, n, sizeof *s->wide.balance);
-    gproji_give(&s->own, s->hinge, s->hinge_taken, sizeof *s->hinge);
-    s->node = s->node_first = NULL;
+    gproji_give(&s->own, s->hinges.list, s->hinges.taken, sizeof *s->hinges.list);
+    s->nodes.of = s->nodes.first = NULL;
     memset(&s->fronts, 0, sizeof s->fronts);
     memset(&s->wide, 0, sizeof s->wide);
-    s->gradient = s->step = s->saved = s->sum = s->sides = NULL;
-    s->hinge = NULL;
-    s->hinge_taken = 0;
+    s->vector.gradient = s->vector.step = s->vector.saved = s->vector.sum = s->vector.sides = NULL;
+    s->hinges.list = NULL;
+    s->hinges.taken = 0;
     gproji_schur_forget(s);
     s->compiled = s->evaluated = false;
 }
@@ -7976,20 +8014,20 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
 GPROJ_API void gproj_system_destroy(gproj_system *s) {
     int32_t i;
     if (!s) return;
-    for (i = 0; i < s->group_count; ++i) s->group[i].sorted = false; /* nobody adds rows any more */
+    for (i = 0; i < s->group_count; ++i) s->group[i].local.sorted = false; /* nobody adds rows any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
         gproji_give(&s->own, s->group[i].row, s->group[i].capacity.row, sizeof *s->group[i].row);
         gproji_give(&s->own, s->group[i].share, s->group[i].capacity.share, sizeof *s->group[i].share);
         gproji_give(&s->own, s->group[i].term, s->group[i].capacity.term, sizeof *s->group[i].term);
-        gproji_give(&s->own, s->group[i].local_variable, s->group[i].capacity.local, sizeof(int32_t));
+        gproji_give(&s->own, s->group[i].local.variable, s->group[i].capacity.local, sizeof(int32_t));
     }
     gproji_give(&s->own, s->group, s->capacity.group, sizeof *s->group);
     gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
-    gproji_give(&s->own, s->block, s->capacity.block, sizeof *s->block);
-    gproji_give(&s->own, s->place, s->capacity.place, sizeof *s->place);
-    gproji_give(&s->own, s->joined, s->capacity.joined, sizeof *s->joined);
-    gproji_give(&s->own, s->auxiliary, s->capacity.auxiliary, sizeof *s->auxiliary);
+    gproji_give(&s->own, s->blocks.first, s->capacity.block, sizeof *s->blocks.first);
+    gproji_give(&s->own, s->naming.place, s->capacity.place, sizeof *s->naming.place);
+    gproji_give(&s->own, s->blocks.joined, s->capacity.joined, sizeof *s->blocks.joined);
+    gproji_give(&s->own, s->blocks.auxiliary, s->capacity.auxiliary, sizeof *s->blocks.auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
 }
@@ -8024,17 +8062,18 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 /* Makes room for `count` further variables. */
 GPROJI_NOINLINE bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->block, *place = s->place, *joined = s->joined, *auxiliary = s->auxiliary;
+    void *x = s->x, *block = s->blocks.first, *place = s->naming.place, *joined = s->blocks.joined,
+         *auxiliary = s->blocks.auxiliary;
     bool enough = gproji_reserve(&s->own, &x, &s->capacity.x, wanted, sizeof *s->x);
     s->x = (double *)x;
-    enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->block);
-    s->block = (int32_t *)block;
-    enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->place);
-    s->place = (int32_t *)place;
-    enough = enough && gproji_reserve(&s->own, &joined, &s->capacity.joined, wanted, sizeof *s->joined);
-    s->joined = (uint8_t *)joined;
-    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->auxiliary);
-    s->auxiliary = (uint8_t *)auxiliary;
+    enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->blocks.first);
+    s->blocks.first = (int32_t *)block;
+    enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->naming.place);
+    s->naming.place = (int32_t *)place;
+    enough = enough && gproji_reserve(&s->own, &joined, &s->capacity.joined, wanted, sizeof *s->blocks.joined);
+    s->blocks.joined = (uint8_t *)joined;
+    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->blocks.auxiliary);
+    s->blocks.auxiliary = (uint8_t *)auxiliary;
     return enough;
 }
 
@@ -8065,8 +8104,8 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     if (s->compiled) gproji_system_forget(s);
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
-        s->block[first + i] = first + i - i % block;
-        s->joined[first + i] = s->auxiliary[first + i] = 0;
+        s->blocks.first[first + i] = first + i - i % block;
+        s->blocks.joined[first + i] = s->blocks.auxiliary[first + i] = 0;
     }
     s->variable_count += count;
     return first;
@@ -8074,7 +8113,7 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
 
 /* Declares variables as local unknowns: eliminated within their element, and not regularised. */
 GPROJI_INTERNAL void gproji_set_auxiliary(gproj_system *s, int32_t first, int32_t count) {
-    memset(s->auxiliary + first, 1, (size_t)count);
+    memset(s->blocks.auxiliary + first, 1, (size_t)count);
 }
 
 GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s ? s->variable_count : 0; }
@@ -8211,11 +8250,11 @@ GPROJI_INTERNAL void gproji_declare_lazy(gproj_system *s, int32_t group) { s->gr
 /* Declares what the rows are to steps. slack: steps may violate a guard's rows by so much. */
 GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_role role, double slack) {
     s->group[group].role = role;
-    s->group[group].slack = slack;
+    s->group[group].guard.slack = slack;
 }
 
 /* Declares that a row has several variables of the block that begins with this one. */
-GPROJI_INLINE void gproji_join_block(gproj_system *s, int32_t first) { s->joined[first] = 1; }
+GPROJI_INLINE void gproji_join_block(gproj_system *s, int32_t first) { s->blocks.joined[first] = 1; }
 
 /* The largest |phi| of each of `count` elements, by the last evaluation; 0 for those without rows. */
 GPROJI_INTERNAL void gproji_worst_by_element(const gproj_system *s, int32_t group, int32_t count, double *worst) {
@@ -8269,14 +8308,14 @@ GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g,
 /* Makes room for further rows, terms and locals. */
 GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
-    void *row = g->row, *term = g->term, *share = g->share, *local = g->local_variable;
+    void *row = g->row, *term = g->term, *share = g->share, *local = g->local.variable;
     bool enough = gproji_reserve(&s->own, &row, &g->capacity.row, wanted, sizeof *g->row);
     g->row = (gproji_row *)row;
     enough = enough && gproji_reserve(&s->own, &term, &g->capacity.term, g->term_count + terms, sizeof *g->term);
     g->term = (gproj_term *)term;
     enough = enough && gproji_reserve(&s->own, &local, &g->capacity.local, gproji_local_count(g) + locals,
-                                      sizeof *g->local_variable);
-    g->local_variable = (int32_t *)local;
+                                      sizeof *g->local.variable);
+    g->local.variable = (int32_t *)local;
     enough = enough && (!share || gproji_reserve(&s->own, &share, &g->capacity.share, wanted, sizeof *g->share));
     g->share = (gproji_share *)share;
     return enough;
@@ -8286,12 +8325,12 @@ GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
 GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
     int32_t t, named = 0;
     for (t = 0; t < count; ++t) {
-        if (s->place[terms[t].i] < 0) s->place[terms[t].i] = named++;
-        if (terms[t].j >= 0 && s->place[terms[t].j] < 0) s->place[terms[t].j] = named++;
+        if (s->naming.place[terms[t].i] < 0) s->naming.place[terms[t].i] = named++;
+        if (terms[t].j >= 0 && s->naming.place[terms[t].j] < 0) s->naming.place[terms[t].j] = named++;
     }
     for (t = 0; t < count; ++t) {
-        s->place[terms[t].i] = -1;
-        if (terms[t].j >= 0) s->place[terms[t].j] = -1;
+        s->naming.place[terms[t].i] = -1;
+        if (terms[t].j >= 0) s->naming.place[terms[t].j] = -1;
     }
     return named;
 }
@@ -8299,7 +8338,7 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for so many further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
-    return g->term && g->local_variable && wanted <= INT32_MAX && wanted <= g->capacity.row &&
+    return g->term && g->local.variable && wanted <= INT32_MAX && wanted <= g->capacity.row &&
            (!g->share || wanted <= g->capacity.share) && g->term_count + terms <= g->capacity.term &&
            g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
            gproji_local_count(g) + locals < UINT32_MAX;
@@ -8364,16 +8403,16 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
-    for (; s->places < s->variable_count; ++s->places) s->place[s->places] = -1;
+    for (; s->naming.count < s->variable_count; ++s->naming.count) s->naming.place[s->naming.count] = -1;
     /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
     if (!gproji_has_room(g, 1, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, 1, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
         return -1;
     row = gproji_start_row(g, (uint32_t)g->term_count, count, constant, element);
     /* 3. Numbers the locals in the order in which terms name them. */
-    local = g->local_variable + row->local;
+    local = g->local.variable + row->local;
     to = g->term + row->term;
-    for (place = s->place, t = 0; t < count; ++t) {
+    for (place = s->naming.place, t = 0; t < count; ++t) {
         int32_t p = terms[t].i, q = terms[t].j;
         if (place[p] < 0) local[named] = p, place[p] = named++;
         if (q >= 0 && place[q] < 0) local[named] = q, place[q] = named++;
@@ -8387,10 +8426,10 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     row->run = run;
     /* 4. Couples blocks that have several variables in the row. */
     for (i = 0; !row->wide && i < named; ++i) {
-        int32_t block = s->block[local[i]];
-        if (s->joined[block]) continue;
-        for (v = block; v < s->variable_count && s->block[v] == block; ++v)
-            if (v != local[i] && place[v] >= 0) s->joined[block] = 1;
+        int32_t block = s->blocks.first[local[i]];
+        if (s->blocks.joined[block]) continue;
+        for (v = block; v < s->variable_count && s->blocks.first[v] == block; ++v)
+            if (v != local[i] && place[v] >= 0) s->blocks.joined[block] = 1;
     }
     for (i = 0; i < named; ++i) place[local[i]] = -1;
     return r;
@@ -8429,7 +8468,7 @@ GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, 
     own = common ? 0 : (size_t)count;
     if (!gproji_has_room(g, (size_t)rows, own, all) && !gproji_make_room(s, g, (size_t)rows, own, all)) return NULL;
     term = common ? g->row[like].term : (uint32_t)g->term_count;
-    local = g->local_variable + g->row[g->row_count].local;
+    local = g->local.variable + g->row[g->row_count].local;
     memcpy(g->term + term, terms, own * sizeof *terms);
     g->common = g->common || common || rows > 1;
     for (; rows > 0; --rows) gproji_end_row(s, g, gproji_start_row(g, term, count, constant, element), locals);
@@ -8464,8 +8503,8 @@ GPROJI_INLINE bool gproji_system_has_row(const gproj_system *s, int32_t group, i
 /* Sets a row's t-th coefficient. */
 GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
     g->term[row->term + t].a = a;
-    if (row->run && g->local_gradient)
-        g->local_gradient[row->local + t] = a; /* the gradient: a contiguous linear row's coefficients */
+    if (row->run && g->local.gradient)
+        g->local.gradient[row->local + t] = a; /* the gradient: a contiguous linear row's coefficients */
 }
 
 GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_t row, const double *coefficients,
@@ -8551,14 +8590,14 @@ GPROJI_INTERNAL bool gproji_set_factors(gproj_system *s, int32_t group, int32_t 
 
 /* Returns the variable that a term's i or j names; -1 for a j that is -1. */
 GPROJI_INLINE int32_t gproji_variable_of(const gproji_group *g, const gproji_row *row, int32_t i) {
-    return i >= 0 ? (g->local_variable + row->local)[i] : i;
+    return i >= 0 ? (g->local.variable + row->local)[i] : i;
 }
 
 /* phi at x, whether compiled or not. */
 GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const double *x) {
     const gproji_row *row = &g->row[r];
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    const int32_t *variable = g->local_variable + row->local;
+    const int32_t *variable = g->local.variable + row->local;
     double phi = row->constant;
     for (; term < end; ++term) {
         double value = term->a * x[variable[term->i]];
@@ -8606,29 +8645,29 @@ GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     size_t n = (size_t)s->variable_count;
     int32_t i, v;
     bool done;
-    s->compiled_variables = s->variable_count;
-    s->node = (int32_t *)gproji_take(&s->own, n, sizeof *s->node);
-    s->node_first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->node_first);
-    done = s->node && s->node_first;
+    s->nodes.variables = s->variable_count;
+    s->nodes.of = (int32_t *)gproji_take(&s->own, n, sizeof *s->nodes.of);
+    s->nodes.first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->nodes.first);
+    done = s->nodes.of && s->nodes.first;
     /* Spare room is given back now, before the analysis needs much memory. */
     for (i = 0; done && i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
-        void *row = g->row, *term = g->term, *local = g->local_variable;
+        void *row = g->row, *term = g->term, *local = g->local.variable;
         done = gproji_trim(&s->own, &row, &g->capacity.row, rows, sizeof *g->row);
         g->row = (gproji_row *)row;
         done = done && gproji_trim(&s->own, &term, &g->capacity.term, terms, sizeof *g->term);
         g->term = (gproj_term *)term;
-        done = done && gproji_trim(&s->own, &local, &g->capacity.local, locals, sizeof *g->local_variable);
-        g->local_variable = (int32_t *)local;
+        done = done && gproji_trim(&s->own, &local, &g->capacity.local, locals, sizeof *g->local.variable);
+        g->local.variable = (int32_t *)local;
     }
     if (!done) return false;
-    s->node_count = 0;
+    s->nodes.count = 0;
     for (v = 0; v < s->variable_count; ++v)
-        if (v == s->block[v] || !s->joined[s->block[v]]) s->node_first[s->node_count++] = v;
-    s->node_first[s->node_count] = s->variable_count;
-    for (i = 0; i < s->node_count; ++i)
-        for (v = s->node_first[i]; v < s->node_first[i + 1]; ++v) s->node[v] = i;
+        if (v == s->blocks.first[v] || !s->blocks.joined[s->blocks.first[v]]) s->nodes.first[s->nodes.count++] = v;
+    s->nodes.first[s->nodes.count] = s->variable_count;
+    for (i = 0; i < s->nodes.count; ++i)
+        for (v = s->nodes.first[i]; v < s->nodes.first[i + 1]; ++v) s->nodes.of[v] = i;
     return true;
 }
 
@@ -8658,7 +8697,7 @@ GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *
 GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
     uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
     int32_t i, r, v;
-    in->node_count = s->node_count;
+    in->node_count = s->nodes.count;
     in->row_room = 1;
     for (i = 0; i < s->group_count; ++i) {
         in->row_room += (size_t)s->group[i].row_count;
@@ -8674,12 +8713,12 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
-            const int32_t *local = g->local_variable + g->row[r].local, *last = g->local_variable + g->row[r + 1].local;
+            const int32_t *local = g->local.variable + g->row[r].local, *last = g->local.variable + g->row[r + 1].local;
             int32_t *node = in->row_node + end;
             uint32_t count = 0, known = 0;
             if (g->row[r].wide) continue;
             for (++stamp; local < last; ++local) {
-                int32_t own = s->node[*local];
+                int32_t own = s->nodes.of[*local];
                 if (in->mark[own] == stamp) continue;
                 in->mark[own] = stamp;
                 node[count++] = own;
@@ -8763,9 +8802,9 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
         const gproji_row *row = &s->group[far_one.group].row[far_one.row], *next = &g->row[near_one.row];
         GPROJI_PREFETCH(row);
         GPROJI_PREFETCH(row + 1);
-        GPROJI_PREFETCH(g->local_at + next->local);
-        if (gradient) GPROJI_PREFETCH(g->local_gradient + next->local);
-        if (gradient) GPROJI_PREFETCH(g->local_gradient + next->local + 8);
+        GPROJI_PREFETCH(g->local.at + next->local);
+        if (gradient) GPROJI_PREFETCH(g->local.gradient + next->local);
+        if (gradient) GPROJI_PREFETCH(g->local.gradient + next->local + 8);
     }
 }
 
@@ -8884,11 +8923,11 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
     memset(copy, 0, sizeof copy);
     for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
         for (k = 0; k < 8; ++k) gproji_start_sorting(&sortings.last[i][k], sortings.last_from[i][k], i);
-    g->sorted = true;
+    g->local.sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t *local = g->local_variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local_at + row->local;
+        int32_t *local = g->local.variable + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local.at + row->local;
         const gproji_sorting *sorting;
         front[r] = -1;
         if (row->wide || count == 0) continue;
@@ -8912,8 +8951,8 @@ GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local_at = (int32_t *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_at);
-        if (!g->local_at) return false;
+        g->local.at = (int32_t *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.at);
+        if (!g->local.at) return false;
     }
     return true;
 }
@@ -8959,7 +8998,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
         for (k = rows->start[f]; k < rows->start[f + 1]; ++k) {
             gproji_group *g = &s->group[rows->row[k].group];
             const gproji_row *own = &g->row[rows->row[k].row];
-            int32_t *local = g->local_at + own->local, *end = g->local_at + own[1].local;
+            int32_t *local = g->local.at + own->local, *end = g->local.at + own[1].local;
             gproji_expect_rows(s, k, false);
             for (; local < end; ++local) *local = at[*local];
         }
@@ -8975,7 +9014,7 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     gproji_incidence in;
     gproj_code code = GPROJ_ERROR_MEMORY;
     memset(&in, 0, sizeof in);
-    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->node_first);
+    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->nodes.first);
     gproji_incidence_give(&s->own, &in);
     return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
@@ -8987,25 +9026,27 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     uint32_t t;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local_gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local_gradient);
-        g->tally = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally);
-        if (!g->local_gradient || !g->tally) return false;
-        if (g->kind == GPROJ_BOUND) s->hinge_taken += (size_t)g->row_count;
+        g->local.gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.gradient);
+        g->tally.part = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
+        if (!g->local.gradient || !g->tally.part) return false;
+        if (g->kind == GPROJ_BOUND) s->hinges.taken += (size_t)g->row_count;
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
         for (r = 0; g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            for (t = 0; row->run && t < row->terms; ++t) g->local_gradient[row->local + t] = g->term[row->term + t].a;
+            for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
     if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) return false; /* a product overflows */
     s->wide.taken = wide;
-    s->hinge = (gproji_hinge *)gproji_take(&s->own, s->hinge_taken, sizeof *s->hinge);
-    s->gradient = (double *)gproji_take(&s->own, n, sizeof *s->gradient);
-    s->saved = (double *)gproji_take(&s->own, n, sizeof *s->saved);
-    s->sides = s->step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->sides);
+    s->hinges.list = (gproji_hinge *)gproji_take(&s->own, s->hinges.taken, sizeof *s->hinges.list);
+    s->vector.gradient = (double *)gproji_take(&s->own, n, sizeof *s->vector.gradient);
+    s->vector.saved = (double *)gproji_take(&s->own, n, sizeof *s->vector.saved);
+    s->vector.sides = s->vector.step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->vector.sides);
     s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
     s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
-    if (!s->hinge || !s->gradient || !s->saved || !s->sides || !s->wide.matrix || !s->wide.vector) return false;
+    if (!s->hinges.list || !s->vector.gradient || !s->vector.saved || !s->vector.sides || !s->wide.matrix ||
+        !s->wide.vector)
+        return false;
     if (wide == 0) return true;
     s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
     s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
@@ -9017,7 +9058,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 /* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
    for large terms that cancel. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
-    const int32_t *variable = g->local_variable + row->local;
+    const int32_t *variable = g->local.variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
     gproji_sum sum = {0, 0};
     sum.high = row->constant;
@@ -9037,10 +9078,10 @@ GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const g
 
 /* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
-    const int32_t *variable = g->local_variable + row->local;
+    const int32_t *variable = g->local.variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
     const double *x = s->x;
-    double *gradient = g->local_gradient + row->local;
+    double *gradient = g->local.gradient + row->local;
     double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
     if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
     row->phi = 0;
@@ -9078,7 +9119,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     gproji_tally tally = {0, 0, -1};
     int32_t r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
     int32_t end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
-    double weight2 = g->tallied * g->tallied;
+    double weight2 = g->tally.weight * g->tally.weight;
     for (; r < end; ++r) {
         const gproji_row *row = &g->row[r];
         double phi = fabs(gproji_counted(g, row->phi));
@@ -9088,7 +9129,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
         tally.largest = phi;
         tally.row = r;
     }
-    g->tally[task] = tally;
+    g->tally.part[task] = tally;
 }
 
 /* Evaluates one chunk, a part of a group's rows. */
@@ -9096,8 +9137,8 @@ GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
     int32_t task, r, end;
-    while (index < g->first_task || index - g->first_task >= gproji_group_tasks(g)) ++g;
-    task = index - g->first_task;
+    while (index < g->tally.first_task || index - g->tally.first_task >= gproji_group_tasks(g)) ++g;
+    task = index - g->tally.first_task;
     r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
     end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
     for (; r < end; ++r) gproji_evaluate_row(s, g, &g->row[r]);
@@ -9113,10 +9154,10 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
         for (i = 0; i < s->group_count; ++i) {
             gproji_group *g = &s->group[i];
             if (g->global != (global == 1)) continue;
-            g->first_task = INT32_MAX;
+            g->tally.first_task = INT32_MAX;
             if (g->role != GPROJI_ORDINARY && !(g->weight > 0)) continue;
-            g->tallied = g->weight;
-            g->first_task = tasks;
+            g->tally.weight = g->weight;
+            g->tally.first_task = tasks;
             tasks += gproji_group_tasks(g);
         }
     gproji_for(&s->host.parallel, tasks, gproji_evaluate_task, s);
@@ -9140,17 +9181,17 @@ GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row 
     double sum = 0;
     int64_t l;
     if (row->run)
-        return gproji_dot(g->local_gradient + row->local, v + g->local_variable[row->local],
+        return gproji_dot(g->local.gradient + row->local, v + g->local.variable[row->local],
                           (size_t)(row[1].local - row->local));
-    for (l = row->local; l < row[1].local; ++l) sum += g->local_gradient[l] * v[g->local_variable[l]];
+    for (l = row->local; l < row[1].local; ++l) sum += g->local.gradient[l] * v[g->local.variable[l]];
     return sum;
 }
 
 /* out += scale * gradient */
 GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row, double scale, double *out) {
     int64_t l, count = row[1].local - row->local;
-    const double *gradient = g->local_gradient + row->local;
-    const int32_t *variable = g->local_variable + row->local;
+    const double *gradient = g->local.gradient + row->local;
+    const int32_t *variable = g->local.variable + row->local;
     if (row->run) {
         for (out += variable[0], l = 0; l < count; ++l) out[l] += scale * gradient[l];
         return;
@@ -9161,12 +9202,13 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
 /* gradient = sum w^2 phi grad phi over narrow rows that act: half their merit's gradient. */
 GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
     int32_t i, r;
-    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            if (!row->wide && row->active) gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->gradient);
+            if (!row->wide && row->active)
+                gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->vector.gradient);
         }
     }
 }
@@ -9199,8 +9241,8 @@ GPROJI_INTERNAL void gproji_load_front(void *user, int32_t front, const gproji_p
         gproji_expect_rows(s, k, true);
         if (!(g->weight > 0) || !row->active) continue;
         /* w^2 g g', lower triangle; locals are sorted, so those with columns in [from, to) are [first, end). */
-        gradient = g->local_gradient + row->local;
-        at = g->local_at + row->local;
+        gradient = g->local.gradient + row->local;
+        at = g->local.at + row->local;
         count = (int32_t)(row[1].local - row->local), first = 0, end = count;
         w2 = gproji_weight2(g, row);
         while (first < end && at[first] < from) ++first;
@@ -9260,7 +9302,7 @@ GPROJI_INTERNAL const gproji_row *gproji_next_wide_row(const gproj_system *s, gp
 
 /* Column `index` in U, or in Y. */
 GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
-    return s->sides + (int64_t)s->variable_count * (index + 1);
+    return s->vector.sides + (int64_t)s->variable_count * (index + 1);
 }
 
 /* Writes the columns of U; only their first n numbers count. Returns how many dense rows act. */
@@ -9270,7 +9312,7 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     int32_t count = 0;
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
         const gproji_group *g = &s->group[at.group];
-        const double *gradient = g->local_gradient + row->local;
+        const double *gradient = g->local.gradient + row->local;
         double *out = gproji_wide_side(s, count++), scale = sqrt(gproji_weight2(g, row));
         size_t first, end, v;
         if (!row->run) {
@@ -9279,7 +9321,7 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
             continue;
         }
         /* Contiguous rows write each number once: the column is long. */
-        first = (size_t)g->local_variable[row->local];
+        first = (size_t)g->local.variable[row->local];
         end = first + (row[1].local - row->local);
         memset(out, 0, first * sizeof *out);
         for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
@@ -9296,7 +9338,7 @@ GPROJI_INTERNAL void gproji_wide_values(gproj_system *s, bool ahead) {
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
         const gproji_group *g = &s->group[at.group];
         double phi = row->phi;
-        if (ahead) phi += gproji_row_times(g, row, s->step);
+        if (ahead) phi += gproji_row_times(g, row, s->vector.step);
         s->wide.vector[index++] = sqrt(gproji_weight2(g, row)) * phi;
     }
 }
@@ -9320,7 +9362,7 @@ GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double
 /* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     int32_t v;
-    for (v = 0; v < s->variable_count; ++v) s->step[v] = -s->gradient[v];
+    for (v = 0; v < s->variable_count; ++v) s->vector.step[v] = -s->vector.gradient[v];
     return gproji_wide_columns(s, (size_t)s->variable_count);
 }
 
@@ -9332,14 +9374,14 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
     double parts = 1;
     int32_t i, k;
     if (taken && wide == 0) {
-        gproji_cholesky_finish(c, s->step);
+        gproji_cholesky_finish(c, s->vector.step);
         return parts;
     }
     /* 1. z and Y. */
     if (taken)
-        memcpy(s->sides, c->solution, ((size_t)wide + 1) * n * sizeof *s->sides);
+        memcpy(s->vector.sides, c->solution, ((size_t)wide + 1) * n * sizeof *s->vector.sides);
     else
-        gproji_cholesky_forward(c, wide + 1, s->sides, s->sides);
+        gproji_cholesky_forward(c, wide + 1, s->vector.sides, s->vector.sides);
     if (wide > 0) {
         /* 2. I + Y'Y, factored. */
         for (i = 0; i < wide; ++i)
@@ -9349,9 +9391,9 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
         gproji_small_factor(s->wide.matrix, wide, s->wide_count, 1);
         /* 3. z - Y m. */
         gproji_wide_values(s, false);
-        parts = gproji_wide_correct(s, wide, s->step);
+        parts = gproji_wide_correct(s, wide, s->vector.step);
     }
-    gproji_cholesky_backward(c, s->step, s->step);
+    gproji_cholesky_backward(c, s->vector.step, s->vector.step);
     return parts;
 }
 
@@ -9365,26 +9407,26 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
     const gproji_row *row;
     int32_t i, r, v;
     /* 1. A dx, from all narrow rows that act. */
-    for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * s->step[v];
+    for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * s->vector.step[v];
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             row = &g->row[r];
             if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, s->step), residual);
+                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, s->vector.step), residual);
         }
     }
     /* 2. U m at this step. */
     memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
         const gproji_group *g = &s->group[at.group];
-        gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->step)), balance);
+        gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->vector.step)), balance);
     }
     /* 3. Their difference, against the right-hand side. */
     for (v = 0; v < s->variable_count; ++v) {
-        residual[v] = -s->gradient[v] - residual[v];
+        residual[v] = -s->vector.gradient[v] - residual[v];
         left = gproji_fmax(left, fabs(residual[v] - balance[v]));
-        size = gproji_fmax(size, fabs(s->gradient[v]) + fabs(balance[v]));
+        size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
     }
     return left <= 1e-9 * size;
 }
@@ -9405,7 +9447,7 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
         gproji_cholesky_forward(s->cholesky, 1, residual, residual);
         gproji_wide_correct(s, wide, residual);
         gproji_cholesky_backward(s->cholesky, residual, residual);
-        for (v = 0; v < s->variable_count; ++v) s->step[v] += residual[v];
+        for (v = 0; v < s->variable_count; ++v) s->vector.step[v] += residual[v];
     }
 }
 
@@ -9439,7 +9481,7 @@ GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double ep
    Solves for the nearest point and drags always take the matrix for all variables. A guard's dormant rows have no
    multipliers until one acts; then those near to acting get them: few ever do.
 
-   Invariant: with schur.on the factorisation's unknowns are the multipliers, and gproji_group.local_at is a local's
+   Invariant: with schur.on the factorisation's unknowns are the multipliers, and gproji_group.local.at is a local's
    position among the variables in its row's element: k < GPROJI_BLOCK_MAX for the k-th local unknown,
    (l + 1) GPROJI_BLOCK_MAX + k for the k-th variable at the element's l-th node; in a row with a single node, k. */
 
@@ -9464,7 +9506,7 @@ enum {
    kind, or the place's number is too large for a table with as many entries as nodes. */
 GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
                                             gproj_place place, int32_t *of_place) {
-    return g->place == place && row->element >= 0 && row->element < s->node_count ? of_place + row->element : NULL;
+    return g->place == place && row->element >= 0 && row->element < s->nodes.count ? of_place + row->element : NULL;
 }
 
 /* Elements met so far, by local unknowns and by place; -1 at first. Each array has room for all nodes. */
@@ -9483,8 +9525,8 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
     *belongs = GPROJI_NOWHERE;
     if (g->idle || row->dormant) return true;
     for (l = row->local; l < row[1].local; ++l) {
-        int32_t node = s->node[g->local_variable[l]];
-        int32_t *seen = s->auxiliary[g->local_variable[l]] ? &auxiliary : &kept;
+        int32_t node = s->nodes.of[g->local.variable[l]];
+        int32_t *seen = s->blocks.auxiliary[g->local.variable[l]] ? &auxiliary : &kept;
         if (*seen >= 0 && *seen != node) {
             if (seen == &auxiliary) return false; /* two normals in one row */
             many = true;
@@ -9509,7 +9551,7 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
 /* Multipliers that may be worth while, at most. */
 GPROJI_INTERNAL double gproji_schur_limit(const gproj_system *s) {
     int32_t v, kept = 0;
-    for (v = 0; v < s->variable_count; ++v) kept += !s->auxiliary[v];
+    for (v = 0; v < s->variable_count; ++v) kept += !s->blocks.auxiliary[v];
     return gproji_schur_most * kept;
 }
 
@@ -9519,17 +9561,18 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
     for (i = s->group_count - 1; i >= 0; --i) { /* wishes, which have many, are often the last */
         const gproji_group *g = &s->group[i];
         for (r = 0; !g->idle && r < g->row_count; ++r) {
-            const int32_t *local = g->local_variable + g->row[r].local, *end = g->local_variable + g->row[r + 1].local;
-            int32_t first = local < end ? s->node[*local] : -1;
+            const int32_t *local = g->local.variable + g->row[r].local, *end = g->local.variable + g->row[r + 1].local;
+            int32_t first = local < end ? s->nodes.of[*local] : -1;
             bool counts = false;
             if (g->row[r].dormant || g->row[r].wide) continue;
             /* A row that joins nodes has a multiplier, unless it may go to a face's element. */
-            for (; local < end && !s->auxiliary[*local]; ++local) counts = counts || s->node[*local] != first;
+            for (; local < end && !s->blocks.auxiliary[*local]; ++local)
+                counts = counts || s->nodes.of[*local] != first;
             counts = counts && g->place != GPROJ_PLACE_FACE;
             if (local < end) {
                 /* Local unknowns met for the first time make an element, which has one multiplier at least. */
-                counts = s->node[*local] > highest;
-                highest = gproji_max(highest, s->node[*local]);
+                counts = s->nodes.of[*local] > highest;
+                highest = gproji_max(highest, s->nodes.of[*local]);
             }
             count += counts;
             if (count > limit) return true;
@@ -9541,7 +9584,7 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
 /* Counts the columns that an element's rows are projected off: N, and one more for a zero sum. */
 GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
     int32_t node = s->schur.auxiliary[element];
-    return s->schur.zero_sum[element] + (node < 0 ? 0 : s->node_first[node + 1] - s->node_first[node]);
+    return s->schur.zero_sum[element] + (node < 0 ? 0 : s->nodes.first[node + 1] - s->nodes.first[node]);
 }
 
 /* Numbers the multipliers: an element has as many as its rows leave. False: one has none, or there are too many for
@@ -9553,13 +9596,13 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
     int64_t k, l;
     /* 1. Counts variables in several elements. With the matrix for all variables the others are eliminated cheaply, and
        count as little as local unknowns. */
-    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    memset(met, 0, (size_t)s->nodes.count * sizeof *met);
     for (l = 0; l < d->link_start[d->elements]; ++l) met[d->link_node[l]]++;
-    for (v = 0; v < s->node_count; ++v)
-        if (met[v] > 1) shared += s->node_first[v + 1] - s->node_first[v];
+    for (v = 0; v < s->nodes.count; ++v)
+        if (met[v] > 1) shared += s->nodes.first[v + 1] - s->nodes.first[v];
     limit = gproji_schur_most * shared;
     /* 2. Numbers multipliers, and counts those at each node: a node makes a dense block for them. */
-    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    memset(met, 0, (size_t)s->nodes.count * sizeof *met);
     d->first[0] = 0;
     for (e = 0; e < d->elements; ++e) {
         int32_t left;
@@ -9582,7 +9625,7 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
     const int32_t *to = belongs;
-    int64_t elements = d->elements, nodes = s->node_count, links = 0, count = 0, k, l;
+    int64_t elements = d->elements, nodes = s->nodes.count, links = 0, count = 0, k, l;
     int32_t i, r, e;
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
@@ -9604,7 +9647,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
         }
     for (i = 0; i < d->elements; ++i) d->row_start[i + 2] += d->row_start[i + 1];
     d->own_start[1] = d->row_start[d->elements + 1];
-    for (i = 0; i < s->node_count; ++i) d->own_start[i + 2] += d->own_start[i + 1];
+    for (i = 0; i < s->nodes.count; ++i) d->own_start[i + 2] += d->own_start[i + 1];
     d->own_start[0] = d->own_start[1];
     for (i = 0, to = belongs; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r, ++to) {
@@ -9614,7 +9657,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
             if (*to < 0 && *to != GPROJI_NOWHERE) d->row[d->own_start[-*to]++] = name;
         }
     /* 2. Lists the nodes that each element joins, as rows name them; and finds the one with local unknowns. */
-    for (i = 0; i < s->node_count; ++i) mark[i] = -1;
+    for (i = 0; i < s->nodes.count; ++i) mark[i] = -1;
     for (e = 0; e < d->elements; ++e) {
         d->link_start[e] = count;
         d->auxiliary[e] = -1;
@@ -9622,9 +9665,9 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
             const gproji_group *g = &s->group[d->row[k].group];
             const gproji_row *row = &g->row[d->row[k].row];
             for (l = row->local; l < row[1].local; ++l) {
-                int32_t variable = g->local_variable[l], node = s->node[variable];
-                if (s->auxiliary[variable]) d->auxiliary[e] = node;
-                if (s->auxiliary[variable] || mark[node] == e) continue;
+                int32_t variable = g->local.variable[l], node = s->nodes.of[variable];
+                if (s->blocks.auxiliary[variable]) d->auxiliary[e] = node;
+                if (s->blocks.auxiliary[variable] || mark[node] == e) continue;
                 mark[node] = e;
                 d->link_node[count++] = node;
             }
@@ -9640,7 +9683,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
 /* Step 2: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
-    size_t nodes = (size_t)s->node_count, rows = 0, v;
+    size_t nodes = (size_t)s->nodes.count, rows = 0, v;
     gproji_elements elements;
     int32_t *mark, *belongs, *to, i, r; /* belongs: by rows, group by group */
     bool enough, pays;
@@ -9673,8 +9716,8 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     int32_t v, e;
     if (links >= UINT32_MAX) return false;
     in->node_count = d->elements;
-    in->row_count = (uint32_t)s->node_count;
-    in->row_room = (size_t)s->node_count + 2;
+    in->row_count = (uint32_t)s->nodes.count;
+    in->row_room = (size_t)s->nodes.count + 2;
     in->entry_room = in->node_entry_room = (size_t)links;
     in->row_start = (uint32_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
@@ -9684,7 +9727,7 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     if (!in->row_start || !in->row_node || !in->node_row || !in->node_start || !in->mark) return false;
     /* Links are the elements' lists; sorted by nodes they are the nodes'. */
     for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
-    for (v = 0; v < s->node_count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
+    for (v = 0; v < s->nodes.count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
         for (k = in->node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
             in->node_row[k] = (uint32_t)d->link_node[k];
@@ -9715,7 +9758,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproji_schur_matrix *w = &d->w;
     gproji_pool *pool = &d->pool;
-    int64_t links = d->link_start[d->elements], nodes = s->node_count, multipliers = d->first[d->elements];
+    int64_t links = d->link_start[d->elements], nodes = s->nodes.count, multipliers = d->first[d->elements];
     int64_t fronts = s->cholesky->symbolic.fronts, entries = 0, values = 0, roots = 0, l;
     int32_t e, v;
     /* 1. Measures the elements: work for the largest batch (see gproji_alike), entries and values in W. */
@@ -9730,15 +9773,15 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
         d->triangle_size = gproji_max(d->triangle_size, size * size);
         entries += left * joined;
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
-            values += left * (s->node_first[d->link_node[l] + 1] - s->node_first[d->link_node[l]]);
+            values += left * (s->nodes.first[d->link_node[l] + 1] - s->nodes.first[d->link_node[l]]);
     }
     /* 2. Local unknowns at the end are not in dense columns; rounded up so that gproji_dot sums alike with them. */
-    for (s->wide.kept = s->variable_count; s->wide.kept > 0 && s->auxiliary[s->wide.kept - 1];) s->wide.kept--;
+    for (s->wide.kept = s->variable_count; s->wide.kept > 0 && s->blocks.auxiliary[s->wide.kept - 1];) s->wide.kept--;
     s->wide.kept = gproji_min(gproji_round_up(s->wide.kept, 4), s->variable_count);
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
-    for (v = 0; d->root_start && v < s->node_count; ++v) {
-        int64_t size = s->auxiliary[s->node_first[v]] ? 0 : s->node_first[v + 1] - s->node_first[v];
+    for (v = 0; d->root_start && v < s->nodes.count; ++v) {
+        int64_t size = s->blocks.auxiliary[s->nodes.first[v]] ? 0 : s->nodes.first[v + 1] - s->nodes.first[v];
         d->root_start[v] = roots;
         roots += size * size;
     }
@@ -9775,13 +9818,13 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             d->w.entry_start[d->link_node[l] + 1] += d->first[e + 1] - d->first[e];
     d->w.value_start[0] = 0;
-    for (v = 0; v < s->node_count; ++v) {
+    for (v = 0; v < s->nodes.count; ++v) {
         d->w.value_start[v + 1] =
-            d->w.value_start[v] + d->w.entry_start[v + 1] * (s->node_first[v + 1] - s->node_first[v]);
+            d->w.value_start[v] + d->w.entry_start[v + 1] * (s->nodes.first[v + 1] - s->nodes.first[v]);
         d->w.entry_start[v + 1] += d->w.entry_start[v];
     }
     /* 2. Places the elements' blocks, front by front; a node goes to the front that eliminates its first multiplier. */
-    memset(met, 0, (size_t)s->node_count * sizeof *met);
+    memset(met, 0, (size_t)s->nodes.count * sizeof *met);
     for (f = 0; f < sy->fronts; ++f) {
         d->w.front_start[f] = count;
         for (k = sy->front[f].first_position; k < sy->front[f].end_position; ++k) {
@@ -9789,7 +9832,7 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
             for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l) {
                 v = d->link_node[l];
                 if (met[v] == 0) sequence[count++] = v;
-                d->link_value[l] = d->w.value_start[v] + (int64_t)met[v] * (s->node_first[v + 1] - s->node_first[v]);
+                d->link_value[l] = d->w.value_start[v] + (int64_t)met[v] * (s->nodes.first[v + 1] - s->nodes.first[v]);
                 for (i = d->first[e]; i < d->first[e + 1]; ++i) d->w.entry[d->w.entry_start[v] + met[v]++] = i;
             }
         }
@@ -9804,7 +9847,7 @@ GPROJI_INTERNAL void gproji_schur_place_matrix(gproj_system *s, int32_t *sequenc
             v = sequence[c];
             d->w.coupling[c].value = d->w.value_start[v];
             d->w.coupling[c].count = (int32_t)(d->w.entry_start[v + 1] - d->w.entry_start[v]);
-            d->w.coupling[c].size = s->node_first[v + 1] - s->node_first[v];
+            d->w.coupling[c].size = s->nodes.first[v + 1] - s->nodes.first[v];
             for (l = d->w.entry_start[v]; l < d->w.entry_start[v + 1]; ++l) d->w.entry_at[entry++] = at[d->w.entry[l]];
         }
     }
@@ -9818,8 +9861,8 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     bool auxiliary = false;
     int64_t l;
     for (l = row->local; l < row[1].local; ++l) {
-        int32_t variable = g->local_variable[l], node = s->node[variable];
-        g->local_at[l] = at[node] + variable - s->node_first[node];
+        int32_t variable = g->local.variable[l], node = s->nodes.of[variable];
+        g->local.at[l] = at[node] + variable - s->nodes.first[node];
         auxiliary = auxiliary || at[node] == 0;
     }
     return auxiliary;
@@ -9831,8 +9874,8 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     const gproji_schur *d = &s->schur;
     int64_t k, l;
     int32_t e;
-    memset(at, 0, (size_t)s->node_count * sizeof *at);
-    for (k = d->own_start[0]; k < d->own_start[s->node_count]; ++k) gproji_schur_place_row(s, d->row[k], at);
+    memset(at, 0, (size_t)s->nodes.count * sizeof *at);
+    for (k = d->own_start[0]; k < d->own_start[s->nodes.count]; ++k) gproji_schur_place_row(s, d->row[k], at);
     for (e = 0; e < d->elements; ++e) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
@@ -9840,7 +9883,7 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
             const gproji_group *g = &s->group[d->row[k].group];
             const gproji_row *row = &g->row[d->row[k].row];
             if (!gproji_schur_place_row(s, d->row[k], at)) continue;
-            for (l = row->local; l < row[1].local; ++l) d->turns[s->node[g->local_variable[l]]] = 1;
+            for (l = row->local; l < row[1].local; ++l) d->turns[s->nodes.of[g->local.variable[l]]] = 1;
         }
     }
 }
@@ -9851,7 +9894,7 @@ GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     gproji_incidence in;
     size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
     int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
-    int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->node_count, sizeof *sequence);
+    int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->nodes.count, sizeof *sequence);
     memset(&in, 0, sizeof in);
     if (at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
         code = gproji_analyse_graph(s, &in, s->schur.first);
@@ -9862,7 +9905,7 @@ GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
     }
     gproji_incidence_give(&s->own, &in);
     gproji_give(&s->own, at, most, sizeof *at);
-    gproji_give(&s->own, sequence, (size_t)s->node_count, sizeof *sequence);
+    gproji_give(&s->own, sequence, (size_t)s->nodes.count, sizeof *sequence);
     return code;
 }
 
@@ -9960,9 +10003,9 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
         bool own = false, joins = false;
         int64_t l;
         for (l = row->local; l < row[1].local; ++l) {
-            int32_t at = g->local_at[l];
+            int32_t at = g->local.at[l];
             if (at < GPROJI_BLOCK_MAX)
-                normal[(at * m + i) * GPROJI_LANES] = w * g->local_gradient[l], own = true;
+                normal[(at * m + i) * GPROJI_LANES] = w * g->local.gradient[l], own = true;
             else
                 joins = true;
         }
@@ -10118,14 +10161,14 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
             right[j] += scale[j] * row->phi;
         }
         for (l = row->local; l < row[1].local; ++l) {
-            int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX;
-            for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local_gradient[l];
+            int32_t at = g->local.at[l] - GPROJI_BLOCK_MAX;
+            for (j = 0; at >= 0 && j < together; ++j) c[j * numbers + at] += scale[j] * g->local.gradient[l];
         }
     }
     /* 2. Packed into W. */
     for (j = first; j < first + together; ++j)
         for (l = link; l < link_end; ++l, c += GPROJI_BLOCK_MAX) {
-            int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+            int32_t v = d->link_node[l], size = s->nodes.first[v + 1] - s->nodes.first[v];
             double *to = d->w.value + d->link_value[l] + (int64_t)j * size;
             for (p = 0; p < size; ++p) to[p] = c[p];
         }
@@ -10191,7 +10234,7 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
     int32_t first = d->first[e], left = d->first[e + 1] - first, i;
     int64_t link = d->link_start[e], l;
     for (l = link; l < d->link_start[e + 1]; ++l) {
-        int32_t v = d->link_node[l], size = s->node_first[v + 1] - s->node_first[v];
+        int32_t v = d->link_node[l], size = s->nodes.first[v + 1] - s->nodes.first[v];
         memset(d->w.value + d->link_value[l], 0, (size_t)(left * size) * sizeof *d->w.value);
     }
     for (i = 0; i < left; ++i) {
@@ -10202,9 +10245,9 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
         d->side[first + i] = w > 0 ? w * row->phi : 0;
         d->share[first + i] = 0;
         for (l = row->local; l < row[1].local && w > 0; ++l) {
-            int32_t at = g->local_at[l] - GPROJI_BLOCK_MAX, v = d->link_node[link + at / GPROJI_BLOCK_MAX];
+            int32_t at = g->local.at[l] - GPROJI_BLOCK_MAX, v = d->link_node[link + at / GPROJI_BLOCK_MAX];
             double *value = d->w.value + d->link_value[link + at / GPROJI_BLOCK_MAX];
-            value[i * (s->node_first[v + 1] - s->node_first[v]) + at % GPROJI_BLOCK_MAX] = w * g->local_gradient[l];
+            value[i * (s->nodes.first[v + 1] - s->nodes.first[v]) + at % GPROJI_BLOCK_MAX] = w * g->local.gradient[l];
         }
     }
 }
@@ -10249,8 +10292,8 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
     for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
         const gproji_group *g = &s->group[d->row[k].group];
         const gproji_row *row = &g->row[d->row[k].row];
-        const double *gradient = g->local_gradient + row->local;
-        const int32_t *at = g->local_at + row->local;
+        const double *gradient = g->local.gradient + row->local;
+        const int32_t *at = g->local.at + row->local;
         int32_t count = (int32_t)(row[1].local - row->local);
         double w = gproji_acting_weight(g, row), w2 = w * w;
         for (i = 0; i < count && w > 0; ++i) {
@@ -10263,7 +10306,8 @@ GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t 
 /* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
-    double *root = d->root + d->root_start[v], *b = s->step + s->node_first[v], *w = d->w.value + d->w.value_start[v];
+    double *root = d->root + d->root_start[v], *b = s->vector.step + s->nodes.first[v],
+           *w = d->w.value + d->w.value_start[v];
     bool plain = d->own_start[v] == d->own_start[v + 1];
     double share = 1, corner;
     int64_t k;
@@ -10278,7 +10322,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
         int64_t numbers = (d->w.entry_start[v + 1] - d->w.entry_start[v]) * size;
         for (k = 0; k < numbers; ++k) w[k] *= corner;
         for (j = 0; j < s->wide.acting; ++j)
-            for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->node_first[v] + i] *= corner;
+            for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->nodes.first[v] + i] *= corner;
         return;
     }
     /* D = L L', K = L^-1; then b, the rows in W and U are multiplied by it. */
@@ -10287,19 +10331,19 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     gproji_invert_triangle(root, size);
     gproji_whiten(size, root, b);
     for (k = d->w.entry_start[v]; k < d->w.entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
-    for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->node_first[v]);
+    for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->nodes.first[v]);
 }
 
 /* Computes these at one chunk of nodes; local unknowns rest at 0. */
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
     const gproji_assembly *assembly = (const gproji_assembly *)data;
     const gproj_system *s = assembly->system;
-    int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
-    int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
+    int32_t v = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk);
+    int32_t end = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
-        int32_t size = s->node_first[v + 1] - s->node_first[v];
-        if (s->auxiliary[s->node_first[v]])
-            memset(s->step + s->node_first[v], 0, (size_t)size * sizeof *s->step);
+        int32_t size = s->nodes.first[v + 1] - s->nodes.first[v];
+        if (s->blocks.auxiliary[s->nodes.first[v]])
+            memset(s->vector.step + s->nodes.first[v], 0, (size_t)size * sizeof *s->vector.step);
         else if (size == 3)
             gproji_schur_node(s, v, 3, assembly->epsilon2);
         else
@@ -10309,7 +10353,7 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
 
 /* Have nodes rows of their own? If not, b = 0. */
 GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
-    return s->schur.own_start[0] < s->schur.own_start[s->node_count];
+    return s->schur.own_start[0] < s->schur.own_start[s->nodes.count];
 }
 
 /* w'x at a node with any size; apart, so that it takes no registers from nodes with three variables. */
@@ -10324,7 +10368,7 @@ GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, in
 GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
                                         double *side) {
     const gproji_schur *d = &s->schur;
-    const int32_t *node_first = s->node_first;
+    const int32_t *node_first = s->nodes.first;
     for (; e < end; ++e) {
         int32_t first = d->first[e], left = d->first[e + 1] - first, j;
         const int32_t *node = d->link_node + d->link_start[e], *last = d->link_node + d->link_start[e + 1];
@@ -10348,7 +10392,7 @@ GPROJI_INTERNAL void gproji_schur_sides(void *data, int32_t chunk) {
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk), i;
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
-    if (gproji_schur_has_own(s)) gproji_schur_times(s, e, end, d->side, s->step, d->side);
+    if (gproji_schur_has_own(s)) gproji_schur_times(s, e, end, d->side, s->vector.step, d->side);
     for (i = 0; i < s->wide.acting; ++i)
         gproji_schur_times(s, e, end, NULL, gproji_wide_side(s, i), d->side + (int64_t)(i + 1) * d->first[d->elements]);
 }
@@ -10428,7 +10472,7 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
             s->wide.matrix[(int64_t)i * s->wide_count + k] =
                 (k == i) + gproji_dot(u, gproji_wide_side(s, k), n) -
                 gproji_dot(y, z + (size_t)(k + 1) * multipliers, multipliers);
-        if (gproji_schur_has_own(s)) s->wide.vector[i] += gproji_dot(u, s->step, n);
+        if (gproji_schur_has_own(s)) s->wide.vector[i] += gproji_dot(u, s->vector.step, n);
         s->wide.vector[i] -= gproji_dot(y, z, multipliers);
     }
     gproji_small_factor(s->wide.matrix, s->wide.acting, s->wide_count, 1);
@@ -10443,24 +10487,24 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
 GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t size) {
     const gproji_schur *d = &s->schur;
     const double *w = d->w.value + d->w.value_start[v];
-    double *u = s->step + s->node_first[v];
+    double *u = s->vector.step + s->nodes.first[v];
     int64_t i;
     int32_t k, p;
     for (i = d->w.entry_start[v]; i < d->w.entry_start[v + 1]; ++i, w += size)
         for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->w.entry[i]];
     for (k = 0; k < s->wide.acting; ++k)
-        for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->node_first[v] + p];
+        for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->nodes.first[v] + p];
     gproji_unwhiten(size, d->root + d->root_start[v], u);
 }
 
 /* Moves one chunk of nodes. */
 GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
-    int32_t v = gproji_chunk_start(s->node_count, s->schur.chunks, chunk);
-    int32_t end = gproji_chunk_start(s->node_count, s->schur.chunks, chunk + 1);
+    int32_t v = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk);
+    int32_t end = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
-        int32_t size = s->node_first[v + 1] - s->node_first[v];
-        if (s->auxiliary[s->node_first[v]]) continue;
+        int32_t size = s->nodes.first[v + 1] - s->nodes.first[v];
+        if (s->blocks.auxiliary[s->nodes.first[v]]) continue;
         if (size == 3)
             gproji_schur_move_node(s, v, 3);
         else
@@ -10480,7 +10524,7 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
         double x[GPROJI_BLOCK_MAX];
         int64_t k, l;
         if (node < 0) continue;
-        size = s->node_first[node + 1] - s->node_first[node];
+        size = s->nodes.first[node + 1] - s->nodes.first[node];
         /* 1. x = N'w^2 (phi + G dv). */
         memset(x, 0, sizeof x);
         for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
@@ -10489,10 +10533,11 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
             double w = gproji_acting_weight(g, row), left = row->phi;
             if (w == 0) continue;
             for (l = row->local; l < row[1].local; ++l)
-                if (g->local_at[l] >= GPROJI_BLOCK_MAX) left += g->local_gradient[l] * s->step[g->local_variable[l]];
+                if (g->local.at[l] >= GPROJI_BLOCK_MAX)
+                    left += g->local.gradient[l] * s->vector.step[g->local.variable[l]];
             left *= w * w;
             for (l = row->local; l < row[1].local; ++l)
-                if (g->local_at[l] < GPROJI_BLOCK_MAX) x[g->local_at[l]] += left * g->local_gradient[l];
+                if (g->local.at[l] < GPROJI_BLOCK_MAX) x[g->local.at[l]] += left * g->local.gradient[l];
         }
         /* 2. x = - (R'R)^-1 x: forwards with R', then backwards with R. */
         for (i = 0; i < size; ++i) {
@@ -10504,7 +10549,7 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
             for (j = i + 1; j < size; ++j) x[i] -= triangle[i * size + j] * x[j];
             x[i] *= triangle[i * size + i];
         }
-        for (i = 0; i < size; ++i) s->step[s->node_first[node] + i] = x[i];
+        for (i = 0; i < size; ++i) s->vector.step[s->nodes.first[node] + i] = x[i];
     }
 }
 
@@ -10637,6 +10682,14 @@ typedef struct gproji_hooks {
 } gproji_hooks;
 
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
+/* Runs by the clock. */
+typedef struct gproji_times {
+    double started, lap; /* clock readings */
+    double spent;        /* seconds in earlier runs */
+    double frame;        /* seconds for this run; < 0: until the end */
+    int32_t first;       /* iterations before this run */
+} gproji_times;
+
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
@@ -10644,13 +10697,10 @@ typedef struct gproji_loop {
     int32_t iterations; /* at most */
     int32_t wish_last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
     double tolerance;
-    double started, lap; /* clock readings */
-    double spent;        /* seconds in earlier runs */
-    double frame;        /* seconds for this run; < 0: until the end */
-    int32_t frame_first; /* iterations before this run */
-    bool begun;          /* the first run has begun */
-    bool restored;       /* x and the rows' numbers are those of a saved state */
-    bool paused;         /* the run ended for its time, and there is more to do */
+    gproji_times time;
+    bool begun;    /* the first run has begun */
+    bool restored; /* x and the rows' numbers are those of a saved state */
+    bool paused;   /* the run ended for its time, and there is more to do */
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
@@ -10707,9 +10757,9 @@ GPROJI_INTERNAL double gproji_now(const gproj_system *s) {
 /* Books the time since the last call to a phase. */
 GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     double now = gproji_now(loop->system);
-    loop->iteration.seconds[phase] += now - loop->lap;
-    loop->result.seconds[phase] += now - loop->lap;
-    loop->lap = now;
+    loop->iteration.seconds[phase] += now - loop->time.lap;
+    loop->result.seconds[phase] += now - loop->time.lap;
+    loop->time.lap = now;
 }
 
 /* The last iteration in which a group has a weight; 0: it keeps one for ever. */
@@ -10766,12 +10816,12 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
         gproji_group *g = &s->group[i];
         double sum = 0;
         if (!gproji_group_counts(g)) continue;
-        if (g->tallied != g->weight) {
-            g->tallied = g->weight;
+        if (g->tally.weight != g->weight) {
+            g->tally.weight = g->weight;
             gproji_for(&s->host.parallel, gproji_group_tasks(g), gproji_tally_task, g);
         }
         for (k = 0; k < gproji_group_tasks(g); ++k) {
-            const gproji_tally *tally = &g->tally[k];
+            const gproji_tally *tally = &g->tally.part[k];
             sum += tally->sum;
             if (g->kind == GPROJ_WISH || tally->row < 0) continue;
             if (standing.group >= 0 && tally->largest <= standing.residual) continue;
@@ -10841,7 +10891,7 @@ GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
     gproj_system *s = pass->system;
     int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    if (v < end) memcpy(s->saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
+    if (v < end) memcpy(s->vector.saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
     pass->largest[task] = 0;
 }
 
@@ -10849,7 +10899,7 @@ GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
 GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     gproji_pass *pass = (gproji_pass *)data;
     gproj_system *s = pass->system;
-    const double *step = s->step, *saved = s->saved;
+    const double *step = s->vector.step, *saved = s->vector.saved;
     double *x = s->x, t = pass->t;
     int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
@@ -10883,7 +10933,7 @@ GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) 
             none = false;
             if (row->terms == 1 && term->j < 0 && fabs(term->a) == 1) continue; /* x_i + c is exact, however large */
             for (l = row->local; l < row[1].local; ++l)
-                largest = gproji_fmax(largest, fabs(s->x[g->local_variable[l]]));
+                largest = gproji_fmax(largest, fabs(s->x[g->local.variable[l]]));
         }
     }
     return none ? all : largest;
@@ -10904,11 +10954,11 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->global && g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            const int32_t *variable = g->local_variable + row->local;
+            const int32_t *variable = g->local.variable + row->local;
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
             double sum = 0;
             if (row->run)
-                sum = gproji_absolute_dot(g->local_gradient + row->local, s->x + variable[0], row->terms);
+                sum = gproji_absolute_dot(g->local.gradient + row->local, s->x + variable[0], row->terms);
             else
                 for (; term < end; ++term)
                     if (term->j < 0) sum += fabs(term->a * s->x[variable[term->i]]);
@@ -10931,7 +10981,7 @@ GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
             const gproji_row *row = &g->row[r];
             double phi = fabs(gproji_counted(g, row->phi)), sum = 0;
             if (phi <= loop->tolerance) continue;
-            for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local_gradient[l] * s->x[g->local_variable[l]]);
+            for (l = row->local; l < row[1].local; ++l) sum += fabs(g->local.gradient[l] * s->x[g->local.variable[l]]);
             if (!(phi <= 4 * DBL_EPSILON * sum)) return HUGE_VAL;
             largest = gproji_fmax(largest, 4 * DBL_EPSILON * sum);
         }
@@ -10976,7 +11026,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     }
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     factored = by_multipliers ? gproji_schur_factor(s)
-                              : gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->sides);
+                              : gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->vector.sides);
     loop->iteration.attempts++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
@@ -10992,7 +11042,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
-    if (s->compiled && s->variable_count) memcpy(s->x, s->saved, (size_t)s->variable_count * sizeof *s->x);
+    if (s->compiled && s->variable_count) memcpy(s->x, s->vector.saved, (size_t)s->variable_count * sizeof *s->x);
 }
 
 /* The merit along a step: c[0] + c[1] t + ... + c[4] t^4 + sum w^2 min(0, phi + t h + t^2 q)^2 over the hinges. */
@@ -11007,19 +11057,19 @@ typedef struct gproji_course {
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
-    m->hinge = s->hinge;
+    m->hinge = s->hinges.list;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
-            const int32_t *variable = g->local_variable + row->local;
+            const int32_t *variable = g->local.variable + row->local;
             double w2 = gproji_weight2(g, row), phi = row->phi, h, q = 0;
             if (!(w2 > 0) || g->role >= GPROJI_METRIC || (g->role == GPROJI_GUARD && !row->active)) continue;
-            h = gproji_row_times(g, row, s->step);
+            h = gproji_row_times(g, row, s->vector.step);
             /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference; runs are linear */
             for (; !row->run && term < end; ++term)
-                if (term->j >= 0) q += term->a * s->step[variable[term->i]] * s->step[variable[term->j]];
+                if (term->j >= 0) q += term->a * s->vector.step[variable[term->i]] * s->vector.step[variable[term->j]];
             if (g->kind != GPROJ_BOUND || phi + h < 0) m->model += w2 * (phi + h) * (phi + h);
             if (g->kind != GPROJ_BOUND) {
                 m->c[0] += w2 * phi * phi;
@@ -11028,7 +11078,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
                 m->c[3] += w2 * 2 * h * q;
                 m->c[4] += w2 * q * q;
             } else if (!(phi + 2 * gproji_fmin(h, 0) + 4 * gproji_fmin(q, 0) >= 0)) { /* a t <= 2 may violate it */
-                gproji_hinge *hinge = &s->hinge[m->count++];
+                gproji_hinge *hinge = &s->hinges.list[m->count++];
                 hinge->w2 = w2, hinge->phi = phi, hinge->h = h, hinge->q = q;
             }
         }
@@ -11135,7 +11185,7 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     double sum = 0;
     int32_t v;
     for (v = 0; v < s->variable_count; ++v)
-        if (!s->auxiliary[v]) sum += s->step[v] * s->step[v];
+        if (!s->blocks.auxiliary[v]) sum += s->vector.step[v] * s->vector.step[v];
     return sum;
 }
 
@@ -11143,7 +11193,7 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
    there. Returns the merit at the new x; afterwards phi of the rows no longer belongs to the step's beginning. */
 GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
     gproj_system *s = loop->system;
-    double *straight = s->gradient; /* free when the step is found */
+    double *straight = s->vector.gradient; /* free when the step is found */
     double square = gproji_step_square(s);
     int32_t i, r, v;
     bool bends;
@@ -11153,7 +11203,7 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             bool acts = row->active && g->role < GPROJI_METRIC;
-            row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->step) : 0;
+            row->phi = acts ? gproji_row_value(g, r, s->x) - row->phi - gproji_row_times(g, row, s->vector.step) : 0;
         }
     }
     /* 2. The correction; one that is long beside the step is none. */
@@ -11161,15 +11211,15 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
     gproji_solve_step(s);
     bends = gproji_step_square(s) <= gproji_bend_most * square;
     for (v = 0; v < s->variable_count; ++v) {
-        straight[v] = s->x[v] - s->saved[v];
-        s->step[v] += straight[v];
+        straight[v] = s->x[v] - s->vector.saved[v];
+        s->vector.step[v] += straight[v];
     }
     /* 3. The bent step if it lowers the merit further, else the straight one. */
     if (bends) {
         double bent = gproji_go(loop, 1, course);
         if (bent < merit) return bent;
     }
-    memcpy(s->step, straight, (size_t)s->variable_count * sizeof *s->step);
+    memcpy(s->vector.step, straight, (size_t)s->variable_count * sizeof *s->vector.step);
     return gproji_go(loop, 1, course);
 }
 
@@ -11183,7 +11233,7 @@ GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gp
     if (*bent) merit = gproji_bend_step(loop, course, merit);
     loop->agreement = promised > 0 ? (none - merit) / promised : 1;
     while (t > gproji_shortest &&
-           (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->saved, s->x))))
+           (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x))))
         merit = gproji_go(loop, t /= 2, course);
     return merit <= none ? t : 0;
 }
@@ -11241,9 +11291,9 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
             gproji_row *row = &g->row[r];
             bool active = false;
             if (row->weight > 0 && g->role == GPROJI_GUARD) {
-                active = row->active || gproji_row_value(g, r, s->x) < -g->slack;
+                active = row->active || gproji_row_value(g, r, s->x) < -g->guard.slack;
             } else if (row->weight > 0) {
-                double ahead = row->phi + gproji_row_times(g, row, s->step);
+                double ahead = row->phi + gproji_row_times(g, row, s->vector.step);
                 active = row->active ? ahead < 0 : ahead < -slack && gproji_row_value(g, r, s->x) < -slack;
             }
             if (active == row->active) continue;
@@ -11270,7 +11320,7 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
         if (g->role != GPROJI_GUARD || !(g->weight > 0)) continue;
         for (r = 0; r < g->row_count && !(g->row[r].active && g->row[r].dormant); ++r) continue;
         if (r == g->row_count) continue;
-        reach = ++g->activations < GPROJI_ACTIVATIONS ? g->activations * g->slack : HUGE_VAL;
+        reach = ++g->guard.activations < GPROJI_ACTIVATIONS ? g->guard.activations * g->guard.slack : HUGE_VAL;
         for (r = 0; r < g->row_count; ++r) {
             gproji_row *row = &g->row[r];
             bool is_near = gproji_fmin(row->phi, gproji_row_value(g, r, s->x)) < reach;
@@ -11282,7 +11332,7 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
 }
 
 /* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is the
-   beginning of the step, and s->saved afterwards too. Returns whether rows were compiled; there may be an error. */
+   beginning of the step, and s->vector.saved afterwards too. Returns whether rows were compiled; there may be an error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
@@ -11305,7 +11355,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         if (!(loop->iteration.step <= DBL_MAX)) return false;
         gproji_settle(loop);
         violated = loop->hooks.inspect && violations < GPROJI_VIOLATIONS &&
-                   loop->hooks.inspect(loop->hooks.user, s->saved, s->x);
+                   loop->hooks.inspect(loop->hooks.user, s->vector.saved, s->x);
         again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
         round += round < GPROJI_BOUND_ROUNDS;
         if (!violated && !again) return true;
@@ -11430,17 +11480,17 @@ GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) 
 GPROJI_INTERNAL bool gproji_holds(const gproji_loop *loop) { return loop->standing.residual <= loop->tolerance; }
 
 GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
-    double spent = loop->spent + gproji_now(loop->system) - loop->started;
+    double spent = loop->time.spent + gproji_now(loop->system) - loop->time.started;
     return loop->options.time_budget > 0 && !(spent < loop->options.time_budget);
 }
 
 /* Would a further iteration, as long as the mean of this run's, end after the time of the run? */
 GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
-    int32_t taken = loop->result.iterations - loop->frame_first;
+    int32_t taken = loop->result.iterations - loop->time.first;
     double spent;
-    if (loop->frame < 0 || taken == 0) return false;
-    spent = gproji_now(loop->system) - loop->started;
-    loop->paused = !(spent + spent / taken < loop->frame);
+    if (loop->time.frame < 0 || taken == 0) return false;
+    spent = gproji_now(loop->system) - loop->time.started;
+    loop->paused = !(spent + spent / taken < loop->time.frame);
     return loop->paused;
 }
 
@@ -11464,7 +11514,7 @@ GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
     bool go_on = true;
     if (loop->options.on_iteration)
         go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
-    loop->lap = gproji_now(loop->system);
+    loop->time.lap = gproji_now(loop->system);
     return go_on;
 }
 
@@ -11492,7 +11542,7 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
             end = gproji_min(end, last);
     }
     if (end >= loop->iterations) return false;
-    loop->frame_first += end - loop->result.iterations; /* they take no time */
+    loop->time.first += end - loop->result.iterations; /* they take no time */
     loop->result.iterations = end;
     return true;
 }
@@ -11559,7 +11609,7 @@ GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
         bool decays = group->schedule.decay > 0 && group->schedule.decay < 1;
         double energy = 0;
         if (group->kind != GPROJ_WISH || !gproji_group_counts(group) || decays) continue;
-        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally[k].sum;
+        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally.part[k].sum;
         if (!(energy > most)) continue;
         most = energy;
         wish = g;
@@ -11573,20 +11623,20 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     double size = 0, sum = 0;
     int64_t l;
     int32_t i, r, v;
-    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             double pull = gproji_weight2(g, row) * gproji_counted(g, row->phi);
-            gproji_row_add(g, row, pull, s->gradient);
+            gproji_row_add(g, row, pull, s->vector.gradient);
             for (l = row->local; l < row[1].local; ++l) {
-                double part = pull * g->local_gradient[l];
+                double part = pull * g->local.gradient[l];
                 size += part * part;
             }
         }
     }
-    for (v = 0; v < s->variable_count; ++v) sum += s->gradient[v] * s->gradient[v];
+    for (v = 0; v < s->variable_count; ++v) sum += s->vector.gradient[v] * s->vector.gradient[v];
     return sum <= 0.01 * size;
 }
 
@@ -11730,8 +11780,9 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
 /* All multipliers are 0. */
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
     int32_t i;
-    if (!s->sum) s->sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->sum);
-    if (!s->sum) return false;
+    if (!s->vector.sum)
+        s->vector.sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->vector.sum);
+    if (!s->vector.sum) return false;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
@@ -11751,7 +11802,7 @@ GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_ro
    definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
     gproj_system *s = loop->system;
-    double *sum = s->sum, first = 0, left = HUGE_VAL, follows = gproji_epsilon_max;
+    double *sum = s->vector.sum, first = 0, left = HUGE_VAL, follows = gproji_epsilon_max;
     int32_t round, i, r, v;
     bool factored;
     if (curved) follows = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_nearest_epsilon), follows);
@@ -11778,7 +11829,7 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
         gproji_merit_gradient(s);
         gproji_solve_step(s);
-        for (v = 0; v < s->variable_count; ++v) sum[v] += s->step[v];
+        for (v = 0; v < s->variable_count; ++v) sum[v] += s->vector.step[v];
         left = 0;
         for (i = 0; i < s->group_count; ++i) {
             gproji_group *g = &s->group[i];
@@ -11788,14 +11839,14 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
                     row->phi = 0;
                     continue;
                 }
-                row->phi += gproji_row_times(g, row, s->step) - (round == 0 ? g->multiplier[r].y : 0);
+                row->phi += gproji_row_times(g, row, s->vector.step) - (round == 0 ? g->multiplier[r].y : 0);
                 g->multiplier[r].rise += row->phi;
                 left += gproji_weight2(g, row) * row->phi * row->phi;
             }
         }
         if (round == 0) first = left;
     }
-    memcpy(s->step, sum, (size_t)s->variable_count * sizeof *sum);
+    memcpy(s->vector.step, sum, (size_t)s->variable_count * sizeof *sum);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -11811,7 +11862,7 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
             gproji_row *row = &g->row[r];
             bool active = false;
             if (gproji_is_multiplied(g, row)) {
-                double phi = gproji_row_value(g, r, s->saved) + gproji_row_times(g, row, s->step);
+                double phi = gproji_row_value(g, r, s->vector.saved) + gproji_row_times(g, row, s->vector.step);
                 active = row->active ? g->multiplier[r].y + g->multiplier[r].rise < 0
                                      : g->role != GPROJI_GUARD && phi < -1e-12;
             }
@@ -11871,7 +11922,7 @@ GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x,
                 continue;
             }
             value += w2 * phi * (phi + 2 * y);
-            if (slope) *slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->step);
+            if (slope) *slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->vector.step);
         }
     }
     return value;
@@ -11901,18 +11952,18 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
         before = now;
         gproji_merit_gradient(s);
         gproji_solve_step(s);
-        for (v = 0; v < s->variable_count; ++v) s->x[v] += s->step[v];
+        for (v = 0; v < s->variable_count; ++v) s->x[v] += s->vector.step[v];
         now = gproji_evaluate_constraints(s);
-        for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->step[v];
+        for (v = 0; !(now <= before) && v < s->variable_count; ++v) s->x[v] -= s->vector.step[v];
     }
-    memcpy(s->step, s->sum, (size_t)s->variable_count * sizeof *s->step);
+    memcpy(s->vector.step, s->vector.sum, (size_t)s->variable_count * sizeof *s->vector.step);
 }
 
 /* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
    does, x is as before. */
 GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     gproj_system *s = loop->system;
-    double slope, before = gproji_lagrangian(s, s->saved, &slope), after, t = 1;
+    double slope, before = gproji_lagrangian(s, s->vector.saved, &slope), after, t = 1;
     int32_t i, r;
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
@@ -11921,7 +11972,7 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
         after = gproji_lagrangian(s, s->x, NULL);
         if (!(after <= DBL_MAX)) continue;
         if (loop->iteration.step > 1e-7 && after > before + 0.1 * t * slope) continue; /* below, rounding decides */
-        if (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->saved, s->x)) continue;
+        if (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
             for (r = 0; r < s->group[i].row_count; ++r)
@@ -11968,20 +12019,20 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     double wishes = 0, left = 0;
     int64_t l;
     int32_t i, r, rows = 0;
-    memset(s->gradient, 0, (size_t)s->variable_count * sizeof *s->gradient);
+    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             bool wish = g->kind == GPROJ_WISH;
             double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
-            gproji_row_add(g, row, pull, s->gradient);
+            gproji_row_add(g, row, pull, s->vector.gradient);
             rows += wish;
             for (l = row->local; wish && l < row[1].local; ++l)
-                wishes += pull * pull * g->local_gradient[l] * g->local_gradient[l];
+                wishes += pull * pull * g->local.gradient[l] * g->local.gradient[l];
         }
     }
-    for (i = 0; i < s->variable_count; ++i) left += s->gradient[i] * s->gradient[i];
+    for (i = 0; i < s->variable_count; ++i) left += s->vector.gradient[i] * s->vector.gradient[i];
     if (rows == 0) return 0;
     if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX)) return HUGE_VAL;
     return sqrt(left / gproji_fmax(wishes, 1e-12 * gproji_nearest_scale * gproji_nearest_scale * gproji_nearest_scale *
@@ -12096,7 +12147,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     if (options) loop->options = *options;
     if (loop->options.time_budget > DBL_MAX) loop->options.time_budget = 0;
     loop->iterations = iterations;
-    loop->frame = -1;
+    loop->time.frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->result.spoiled.element = -1;
@@ -12144,7 +12195,7 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->progress.tangential = nearest;
-    if (nearest && !s->sum) { /* a solve of the system in between has taken them */
+    if (nearest && !s->vector.sum) { /* a solve of the system in between has taken them */
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
             return;
@@ -12163,10 +12214,10 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
    how it stands. */
 GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
     gproj_system *s = loop->system;
-    loop->frame = seconds;
-    loop->frame_first = loop->result.iterations;
+    loop->time.frame = seconds;
+    loop->time.first = loop->result.iterations;
     loop->paused = false;
-    loop->started = loop->lap = gproji_now(s);
+    loop->time.started = loop->time.lap = gproji_now(s);
     if (gproji_compile(s, loop->options.nearest) == GPROJ_OK) {
         gproji_lap(loop, GPROJ_PHASE_ANALYSE);
         s->solving = true;
@@ -12176,7 +12227,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
             gproji_start_loop(loop);
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
         s->solving = s->progress.tangential = false;
-        loop->spent += loop->lap - loop->started;
+        loop->time.spent += loop->time.lap - loop->time.started;
         if (loop->result.outcome == GPROJ_CONVERGED) gproji_values_are_valid(s);
     }
     if (s->error.code != GPROJ_OK) {
@@ -12339,7 +12390,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
     gproji_pass_integer(stream, &zero_sum, 0, g->row_count);
     same = idle == g->idle && zero_sum == g->zero_sum;
     if (reading) g->idle = idle, g->zero_sum = zero_sum;
-    if (g->role == GPROJI_GUARD) gproji_pass_integer(stream, &g->activations, 0, INT32_MAX / 2);
+    if (g->role == GPROJI_GUARD) gproji_pass_integer(stream, &g->guard.activations, 0, INT32_MAX / 2);
     for (r = 0; g->role == GPROJI_GUARD && r < g->row_count && !stream->wrong; ++r) {
         bool dormant = g->row[r].dormant;
         gproji_pass_bool(stream, &dormant);
@@ -12355,7 +12406,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
 /* Passes a solve under way. Returns which part of the groups belongs to it. */
 GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_system *s, gproji_loop *loop) {
     gproji_passing passing;
-    bool nearest, begun, ready = s->compiled && s->sum;
+    bool nearest, begun, ready = s->compiled && s->vector.sum;
     int32_t i;
     gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
@@ -12366,7 +12417,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_bool(stream, &loop->options.skip_guard);
     nearest = gproji_pass_bool(stream, &loop->options.nearest);
     gproji_pass_integer(stream, &loop->iterations, 0, INT32_MAX);
-    gproji_pass_double(stream, &loop->spent, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->time.spent, 0, DBL_MAX);
     begun = gproji_pass_bool(stream, &loop->begun);
     gproji_pass_integer(stream, &loop->result.iterations, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->result.damped, 0, INT32_MAX / 2);
@@ -12467,7 +12518,7 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
                 wide = gproji_step_sides(s);
                 gproji_finish_step(s, wide, false);
             }
-            for (i = 0; base && i < n; ++i) base[i] += s->step[i];
+            for (i = 0; base && i < n; ++i) base[i] += s->vector.step[i];
         }
         /* 3. Q = (A + U U')^-1 Q, the dense rows being the columns of U: see gproji_wide_correct. */
         column = motion + n * (size_t)first;
@@ -12499,7 +12550,7 @@ GPROJI_INTERNAL void gproji_end_restoring(gproj_system *s) { s->changed = false;
 
 /* Hashes how many variables there are, and their blocks. */
 GPROJI_INTERNAL uint64_t gproji_hash_variables(uint64_t hash, const gproj_system *s) {
-    return gproji_hash_integers(hash, s->block, (size_t)s->variable_count);
+    return gproji_hash_integers(hash, s->blocks.first, (size_t)s->variable_count);
 }
 
 /* Hashes a group: name, kind, rows with the variables of their terms, without the numbers that a state has. */

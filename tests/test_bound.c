@@ -430,8 +430,8 @@ GPROJT_TEST(the_course_is_the_merit) {
     GPROJT_REQUIRE(gproji_compile(s, false) == GPROJ_OK);
     gproji_set_weights(&loop, 1);
     gproji_linearise(&loop);
-    memcpy(s->saved, s->x, 2 * sizeof(double));
-    s->step[0] = 0.9, s->step[1] = -0.7;
+    memcpy(s->vector.saved, s->x, 2 * sizeof(double));
+    s->vector.step[0] = 0.9, s->vector.step[1] = -0.7;
     gproji_take_step(s, 1);
     gproji_merit_along(s, &m);
     GPROJT_CHECK(m.count == 1);

@@ -1182,11 +1182,11 @@ GPROJT_TEST(metric_comes_back) {
     GPROJT_CHECK(s->group[1].weight == 0);
     gproji_system_forget(s);
     GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
-    for (i = 0; i < 2; ++i) s->group[1].local_gradient[i] = HUGE_VAL; /* whatever memory had */
+    for (i = 0; i < 2; ++i) s->group[1].local.gradient[i] = HUGE_VAL; /* whatever memory had */
     gproji_see_rows(&loop);
     gproji_stiffen(&loop, 0.5);
     GPROJT_CHECK(s->group[1].weight == 0.05);
-    GPROJT_CHECK(s->group[1].local_gradient[0] == 1 && s->group[1].local_gradient[1] == 1);
+    GPROJT_CHECK(s->group[1].local.gradient[0] == 1 && s->group[1].local.gradient[1] == 1);
     GPROJT_CHECK(gproji_find_step(&loop, 1e-3) && gproji_take_step(s, 0) == 0);
     gproj_system_destroy(s);
 }

@@ -140,16 +140,16 @@ static double gprojt_step_error(gproj_form *form, double epsilon) {
     gprojt_dense d;
     int32_t v, f;
     GPROJT_CHECK(gproji_find_step(&form->solve.loop, epsilon));
-    for (v = 0; v < form->mesh->vertex_count; ++v) GPROJT_NEAR(s->schur.metric[s->node[3 * v]] / metric[v], 1, 1e-9);
+    for (v = 0; v < form->mesh->vertex_count; ++v) GPROJT_NEAR(s->schur.metric[s->nodes.of[3 * v]] / metric[v], 1, 1e-9);
     d = gprojt_dense_step(form, epsilon, metric);
     for (v = 0; v < d.n; ++v) {
-        GPROJT_CHECK(gproji_is_finite(s->step[v]));
-        worst = fmax(worst, fabs(s->step[v] - (double)d.b[v]));
+        GPROJT_CHECK(gproji_is_finite(s->vector.step[v]));
+        worst = fmax(worst, fabs(s->vector.step[v] - (double)d.b[v]));
         largest = fmax(largest, fabs((double)d.b[v]));
     }
     for (f = 0; f < form->mesh->face_count; ++f)
         for (v = 0; v < 3 && form->normal[f] >= 0; ++v)
-            GPROJT_CHECK(d.b[form->normal[f] + v] != 0 || s->step[form->normal[f] + v] == 0);
+            GPROJT_CHECK(d.b[form->normal[f] + v] != 0 || s->vector.step[form->normal[f] + v] == 0);
     free(metric);
     free(d.a);
     free(d.b);
@@ -891,7 +891,7 @@ GPROJT_TEST(bad_faces) {
             gprojt_begin(form, false);
             for (k = 0; k < 4; ++k) {
                 GPROJT_CHECK(gprojt_is_on(form) && gproji_find_step(&form->solve.loop, epsilon[k]));
-                GPROJT_CHECK(gprojt_all_finite(form->system->step, form->system->variable_count));
+                GPROJT_CHECK(gprojt_all_finite(form->system->vector.step, form->system->variable_count));
             }
             if (bad >= GPROJT_EQUAL && bad != GPROJT_POINT) GPROJT_CHECK(gprojt_step_error(form, 1e-3) <= 1e-9);
             result = gproj_solve(form, 20, &options);

@@ -216,7 +216,7 @@ static void bench_regularise(gproj_system *s, bench_rows *rows) {
     int32_t v;
     if (s->schur.on) gproji_schur_assemble(s, BENCH_EPSILON);
     for (v = 0; v < s->variable_count; ++v) {
-        double metric = !s->schur.on ? 1 : s->auxiliary[v] ? 0 : s->schur.metric[s->node[v]];
+        double metric = !s->schur.on ? 1 : s->blocks.auxiliary[v] ? 0 : s->schur.metric[s->nodes.of[v]];
         rows->regularisation[v] = BENCH_EPSILON * BENCH_EPSILON * metric;
     }
 }
