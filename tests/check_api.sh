@@ -129,7 +129,7 @@ done
 # Microsoft's compiler has no restrict in its older modes; its headers are not here, so only the preprocessor is tried.
 if have clang; then
     mkdir "$work/empty"
-    for name in assert fcntl float io limits math process share stdarg stdbool stddef stdint stdio stdlib string intrin; do
+    for name in assert fcntl float io limits math process share stdarg stdbool stddef stdint stdio stdlib string time intrin; do
         : >"$work/empty/$name.h"
     done
     mkdir "$work/empty/sys" && : >"$work/empty/sys/stat.h"

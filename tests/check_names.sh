@@ -27,7 +27,7 @@ complain("macros", [m for m in macros if not re.match(r"GPROJI?_|GUIDEDPROJ_(H|I
 known = (r"__(cplusplus|GNUC(_MINOR)?__|clang(_major)?__|TINYC__|attribute__|has_(attribute|builtin|include)|builtin_\w+|"
          r"extension__|vector_size__|STDC_VERSION__|FAST_MATH__|(AVX|FMA|SSE|ARM_|wasm|aarch64|x86_64|i386)\w*|"
          r"OPTIMIZE__|SIZEOF_\w+__|BYTE_ORDER__|ORDER_\w+__|FILE__|LINE__|restrict(__)?|declspec|forceinline|m\d+\w*|"
-         r"mmask\d+|get_cpuid(_count)?|asm__|volatile__|CYGWIN__|unix__|APPLE__|HAIKU__|STRICT_ANSI__|stdcall)$|"
+         r"mmask\d+|get_cpuid(_count)?|asm__|volatile__|CYGWIN__|unix__|APPLE__|HAIKU__|wasi__|STRICT_ANSI__|stdcall)$|"
          r"_(MSC_VER|MSVC_LANG|WIN32|WIN64|Pragma|M_\w+|mm\w+|O_[A-Z]+|S_I[A-Z]+|SH_DENYNO)$")
 complain("reserved", [f"line {line}: {name}" for line, name in uses(r"\b(?:_[A-Z]\w*|\w*__\w*)\b")
                       if not re.match(known, name)])
