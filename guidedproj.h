@@ -2443,8 +2443,7 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task, or of one object; one call gives them all back. Several can be taken before one
-   look at `failed`. */
+/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. */
 enum {
     GPROJI_POOL_BLOCKS = 48 /* more than any takes */
 };
@@ -2732,9 +2731,8 @@ GPROJI_INTERNAL bool gproji_normalise3(double a[3], const double fallback[3]) {
     return true;
 }
 
-/* Completes a unit vector n to a right-handed orthonormal basis u, v, n, continuous away from n = -e_z (Frisvad 2012,
-   in the form by Duff et al. 2017; the jump at n_z = 0 does no harm, as all users are invariant under rotations in the
-   plane of u and v). */
+/* Completes a unit vector n to a right-handed orthonormal basis u, v, n (Frisvad 2012, in the form by Duff et al. 2017;
+   the jump at n_z = 0 does no harm, as all users are invariant under rotations in the plane of u and v). */
 GPROJI_INTERNAL void gproji_tangents3(const double n[3], double u[3], double v[3]) {
     double sign = n[2] < 0 ? -1.0 : 1.0, a = -1.0 / (sign + n[2]), b = n[0] * n[1] * a;
     gproji_set3(1.0 + sign * n[0] * n[0] * a, sign * b, -sign * n[0], u);
@@ -2930,8 +2928,7 @@ typedef double gproji_lanes_at_4 __attribute__((vector_size(32), aligned(8), may
 typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may_alias));
 #endif
 
-/* A kernel is compiled for one kind of unit, never inlined elsewhere, and may fuse multiplication and addition. It
-   begins with GPROJI_BEGIN, which defines the vectors. */
+/* Kernels are compiled for one kind of unit and may fuse products and sums. GPROJI_BEGIN defines their vectors. */
 #if defined(__clang__)
 #define GPROJI_KERNEL(target) __attribute__((noinline, unused GPROJI_TARGET_##target)) static
 #define GPROJI_TARGET_avx512 , target("avx512f,avx2,fma"), min_vector_width(512)
@@ -2997,9 +2994,6 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
     GPROJI_EXISTS(5, R(S, 5) P(E, 4, 5) P(E, 3, 5) P(E, 2, 5) P(E, 1, 5) P(E, 0, 5))                                   \
     GPROJI_EXISTS(4, R(S, 4) P(E, 3, 4) P(E, 2, 4) P(E, 1, 4) P(E, 0, 4)) GPROJI_BACKWARD_4(R, P, S, E)
 
-#define GPROJI_TILE_NEXT                                                                                               \
-    if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                      \
-    a += stride, b += stride;
 #define GPROJI_TILE_DECLARE(r, j) lanes tile_##r##_##j = zero;
 #define GPROJI_TILE_LOAD_A(r, j) const lanes a_##r = GPROJI_LOAD(a + (r) * LANES);
 #define GPROJI_TILE_MULTIPLY(r, j) tile_##r##_##j -= a_##r * b[j];
@@ -3008,6 +3002,17 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
 #define GPROJI_TILE_SCALE(r, j) tile_##r##_##j *= inverse[(j) - skip];
 #define GPROJI_TILE_ELIMINATE(r, i, j) tile_##r##_##i -= tile_##r##_##j * triangle[(i) + ((j) - skip) * ldc];
 
+/* tile = - A B' */
+#define GPROJI_TILE_PRODUCT(B, T)                                                                                      \
+    const lanes zero = {0};                                                                                            \
+    GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                           \
+    for (; k > 0; --k) {                                                                                               \
+        GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                         \
+        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                      \
+        if (--left == 0) left = GPROJI_BLOCK, stride -= GPROJI_BLOCK;                                                  \
+        a += stride, b += stride;                                                                                      \
+    }
+
 /* A tile of T vectors by B columns: see `update` and `solve`. */
 #define GPROJI_DEFINE_TILE(kind, L, B, T)                                                                              \
     GPROJI_KERNEL(kind) void gproji_update_##T##_##kind(int32_t k, const double *a, const double *b,                   \
@@ -3015,13 +3020,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
                                                         bool fresh) {                                                  \
         GPROJI_BEGIN(L)                                                                                                \
         enum { skip = 0 };                                                                                             \
-        const lanes zero = {0};                                                                                        \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k) {                                                                                           \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
-            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
-            GPROJI_TILE_NEXT                                                                                           \
-        }                                                                                                              \
+        GPROJI_TILE_PRODUCT(B, T)                                                                                      \
         if (!fresh) { GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD) }                                           \
         GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                           \
     }                                                                                                                  \
@@ -3029,13 +3028,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c, ptrdiff_t ldc,         \
         const double *triangle, const double *inverse, int32_t skip) {                                                 \
         GPROJI_BEGIN(L)                                                                                                \
-        const lanes zero = {0};                                                                                        \
-        GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_DECLARE)                                                       \
-        for (; k > 0; --k) {                                                                                           \
-            GPROJI_ROWS_##T(GPROJI_TILE_LOAD_A, 0)                                                                     \
-            GPROJI_COLUMNS_##B(GPROJI_ROWS_##T, GPROJI_TILE_MULTIPLY)                                                  \
-            GPROJI_TILE_NEXT                                                                                           \
-        }                                                                                                              \
+        GPROJI_TILE_PRODUCT(B, T)                                                                                      \
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_ADD)                                                          \
         GPROJI_FORWARD_##B(GPROJI_ROWS_##T, GPROJI_PAIRS_##T, GPROJI_TILE_SCALE, GPROJI_TILE_ELIMINATE)                \
         GPROJI_EXISTING_##B(GPROJI_ROWS_##T, GPROJI_TILE_PUT)                                                          \
@@ -3865,8 +3858,7 @@ GPROJI_INTERNAL void gproji_amd_form_element(gproji_amd *amd, int32_t pivot) {
     for (k = 0; k < heads; ++k) needed += amd->length[amd->space[amd->list[pivot] + k]];
     if (needed > amd->left) needed = amd->left; /* each variable at most once */
     if (amd->free + needed > amd->size) {
-        /* Out of space: move all lists to the front. A list's first entry waits in list[i] while the node's number, as
-           -1 - i, marks the list's beginning. */
+        /* Out of space: move all lists to the front. -1 - i marks a list's beginning; its entry waits in list[i]. */
         for (i = 0; i < amd->nodes; ++i) {
             if (amd->kind[i] == GPROJI_AMD_GONE || amd->length[i] == 0) continue;
             from = amd->list[i];
@@ -5314,7 +5306,13 @@ typedef struct gproji_front {
 } gproji_front;
 
 enum {
-    GPROJI_TASK_LEVELS = 2 /* within one level, tasks are independent */
+    GPROJI_TASK_LEVELS = 2,             /* within one level, tasks are independent */
+    GPROJI_NODES_AHEAD = 8,             /* see gproji_expect_neighbours */
+    GPROJI_FAMILY_TRIES = 64,           /* gaps that are tried before the end of the memory is taken */
+    GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
+    GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
+    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 typedef struct gproji_symbolic {
@@ -5340,10 +5338,6 @@ typedef struct gproji_symbolic {
     int32_t most_rows; /* padded rows in the largest panel */
     double flops;
 } gproji_symbolic;
-
-enum {
-    GPROJI_NODES_AHEAD = 8 /* see gproji_expect_neighbours */
-};
 
 /* Scratch for an analysis; all arrays have `nodes` entries. */
 typedef struct gproji_analysis {
@@ -5515,13 +5509,6 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
         out->flops += gproji_front_flops((double)w, (double)below);
     }
 }
-
-enum {
-    GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
-    GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
-    GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
-    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
-};
 
 /* Orders condensed nodes first, the others by dissection, and counts the factor. Condenses the graph if needed. */
 GPROJI_INTERNAL bool gproji_dissect_order(gproji_analysis *an, gproji_condensation *condensed) {
@@ -5770,10 +5757,6 @@ typedef struct gproji_family {
     int64_t low, high;
     int32_t before, after; /* in the ring */
 } gproji_family;
-
-enum {
-    GPROJI_FAMILY_TRIES = 64 /* gaps that are tried before the end is taken */
-};
 
 /* Gives the children of front f the first gap that is large enough; `update` becomes the distance to their far ends. */
 GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
@@ -6321,8 +6304,7 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     return true;
 }
 
-/* Sorts the entries by fronts and finds their offsets in L. An entry belongs to the front that eliminates the row or
-   the column, whichever comes first. False: no memory. */
+/* Sorts the entries by fronts, those that eliminate row or column first, and finds offsets in L. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
                                                    const int32_t *row) {
     const gproji_symbolic *sy = &c->symbolic;
