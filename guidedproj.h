@@ -1792,7 +1792,6 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INLINE static inline
 #define GPROJI_INTERNAL static
 #endif
-#define GPROJI_NOINLINE GPROJI_INTERNAL
 
 /* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
 #if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
@@ -2495,7 +2494,7 @@ GPROJI_INTERNAL int32_t *gproji_take_ints(gproji_pool *pool, int64_t count) {
 }
 
 /* Takes a copy of `count` elements. */
-GPROJI_NOINLINE void *gproji_pool_copy(gproji_pool *pool, const void *elements, int64_t count, size_t size) {
+GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
     if (block && count) memcpy(block, elements, (size_t)count * size);
     return block;
@@ -2637,14 +2636,14 @@ GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
 }
 
 /* Begins a public function: clears the error; false, and an error about `noun`, if the argument is NULL. */
-GPROJI_NOINLINE bool gproji_given(const void *argument, const char *noun, gproj_error *error) {
+GPROJI_INTERNAL bool gproji_given(const void *argument, const char *noun, gproj_error *error) {
     gproji_error_clear(error);
     if (!argument) gproji_refuse(error, "the %s is NULL", noun);
     return argument != NULL;
 }
 
 /* Takes an object's struct from a new heap, as gproji_create_object does; fails without memory. */
-GPROJI_NOINLINE void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
+GPROJI_INTERNAL void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
     void *object = gproji_create_object(host, size);
     if (!object) gproji_fail_memory(error);
     return object;
@@ -6327,11 +6326,11 @@ GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_com
     for (f = 0; f < sy->fronts; ++f) to->start[f + 2] += to->start[f + 1];
     for (j = 0; j < x->n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p) {
-            int32_t early = gproji_min(column_of[j], column_of[row[p]]);
-            int32_t late = gproji_max(column_of[j], column_of[row[p]]);
-            int64_t at = to->start[front_of[early] + 1]++;
+            int32_t earlier = gproji_min(column_of[j], column_of[row[p]]);
+            int32_t later = gproji_max(column_of[j], column_of[row[p]]);
+            int64_t at = to->start[front_of[earlier] + 1]++;
             to->number[at] = p;
-            to->target[at] = early | (int64_t)late << 32;
+            to->target[at] = earlier | (int64_t)later << 32;
         }
     /* 2. Columns of L become offsets. */
     for (f = 0; f < sy->fronts; ++f) {
@@ -6339,8 +6338,8 @@ GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_com
         gproji_shape shape = gproji_shape_of(front->width, front->below);
         gproji_map_rows(c, f, NULL, row_of);
         for (p = to->start[f]; p < to->start[f + 1]; ++p) {
-            int32_t early = (int32_t)(to->target[p] & INT32_MAX), late = (int32_t)(to->target[p] >> 32);
-            to->target[p] = front->panel + gproji_shape_offset(shape, row_of[early]) + row_of[late];
+            int32_t earlier = (int32_t)(to->target[p] & INT32_MAX), later = (int32_t)(to->target[p] >> 32);
+            to->target[p] = front->panel + gproji_shape_offset(shape, row_of[earlier]) + row_of[later];
         }
     }
     return true;
@@ -7530,7 +7529,7 @@ GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, 
 
 /* The following pass a value, set it when it is read, and return the passed one. */
 
-GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
+GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
     if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
@@ -7538,7 +7537,7 @@ GPROJI_NOINLINE int32_t gproji_pass_integer(gproji_stream *stream, int32_t *valu
     return (int32_t)passed;
 }
 
-GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
+GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
     if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
     if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
@@ -7546,7 +7545,7 @@ GPROJI_NOINLINE bool gproji_pass_bool(gproji_stream *stream, bool *value) {
 }
 
 /* A number between `least` and `most`, which may be infinite. */
-GPROJI_NOINLINE double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
+GPROJI_INTERNAL double gproji_pass_double(gproji_stream *stream, double *value, double least, double most) {
     uint64_t bits;
     double passed;
     memcpy(&bits, value, sizeof bits);
@@ -8042,7 +8041,7 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 }
 
 /* Makes room for `count` further variables. */
-GPROJI_NOINLINE bool gproji_reserve_variables(gproj_system *s, size_t count) {
+GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
     void *x = s->x, *block = s->blocks.first, *place = s->naming.place, *joined = s->blocks.joined,
          *auxiliary = s->blocks.auxiliary;
@@ -8272,7 +8271,7 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
 }
 
 /* Reports the first term that does not fit this system. */
-GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
+GPROJI_INTERNAL void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
                                          const gproj_term *terms) {
     int32_t t;
     for (t = 0; t < count; ++t) {
@@ -8288,7 +8287,7 @@ GPROJI_NOINLINE void gproji_refuse_terms(gproj_system *s, const gproji_group *g,
 }
 
 /* Makes room for further rows, terms and locals. */
-GPROJI_NOINLINE bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
     void *row = g->row, *term = g->term, *share = g->share, *local = g->local.variable;
     bool enough = gproji_reserve(&s->own, &row, &g->capacity.row, wanted, sizeof *g->row);
@@ -8327,7 +8326,7 @@ GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t te
 }
 
 /* Makes this room, or fails. */
-GPROJI_NOINLINE bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     if (rows > (size_t)(INT32_MAX - 1 - g->row_count) || terms >= UINT32_MAX - g->term_count ||
         locals >= UINT32_MAX - gproji_local_count(g))
         gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
@@ -10339,7 +10338,7 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
 }
 
 /* w'x at a node with any size; apart, so that it takes no registers from nodes with three variables. */
-GPROJI_NOINLINE double gproji_schur_product(const double *w, const double *x, int32_t size) {
+GPROJI_INTERNAL double gproji_schur_product(const double *w, const double *x, int32_t size) {
     double sum = 0;
     int32_t k;
     for (k = 0; k < size; ++k) sum += w[k] * x[k];
@@ -13012,7 +13011,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
     return NULL;
 }
 
-GPROJI_NOINLINE gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
+GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *object = (gproji_mesh_object *)gproji_begin_object(host, sizeof(gproji_mesh_object), error);
     if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
@@ -13663,7 +13662,7 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
 }
 
 /* Scans the next word, over line ends and comments; false at the end of the text. */
-GPROJI_NOINLINE bool gproji_next_word_anywhere(gproji_reader *reader) {
+GPROJI_INTERNAL bool gproji_next_word_anywhere(gproji_reader *reader) {
     while (!gproji_next_word(reader)) {
         if (!gproji_next_line(reader)) return false;
     }
@@ -15580,7 +15579,7 @@ typedef struct gproji_edit_object {
 /* -- memory -- */
 
 /* Finds the arrays within their blocks, and shows them in the public struct and in the view. */
-GPROJI_NOINLINE void gproji_edit_publish(gproji_edit_object *object) {
+GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
     gproji_edit_store *s = &object->now;
     gproj_edit *edit = &object->edit;
     gproj_mesh *view = &object->view;
@@ -16254,14 +16253,13 @@ GPROJI_INTERNAL gproj_code gproji_triangulate_face(gproji_edit_object *object, g
     stack[depth++] = 0, stack[depth++] = n - 1; /* parts from a ring corner to another, one face each */
     while (depth) {
         int32_t last = stack[--depth], first = stack[--depth], apex = work->apex[first * n + last];
-        int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]],
-                closing = object->now.prev[from];
+        int32_t from = halfedge[work->ring[first]], middle = halfedge[work->ring[apex]], after = object->now.prev[from];
         if (apex > first + 1) {
             gproji_edit_cut(object, from, middle);
             stack[depth++] = first, stack[depth++] = apex;
         }
         if (last > apex + 1) {
-            gproji_edit_cut(object, middle, closing);
+            gproji_edit_cut(object, middle, after);
             stack[depth++] = apex, stack[depth++] = last;
         }
     }
@@ -17289,9 +17287,9 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
 GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
                                        double m[3]) {
     static const double up[3] = {0, 0, 1};
-    double closing[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
+    double gaps[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
     int32_t at, edges = 0, sweep, best = 0, i, j, k;
-    /* 1. `closing`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
+    /* 1. `gaps`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
        the sum over image'n, n the unit normal at the vertex; m goes along it best. */
     for (at = work->first; at < work->last; ++at) {
         int32_t vertex = work->queue[at], start = mesh->vertex_halfedge[vertex], h = start;
@@ -17305,21 +17303,21 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
             gproji_mirror(mesh, h, image, d);
             for (i = 0; i < 9; ++i) d[i] = other[i] - d[i];
             for (i = 0; i < 9; ++i)
-                for (k = 0; k < 3; ++k) closing[i / 3][i % 3] += d[3 * k + i / 3] * d[3 * k + i % 3];
+                for (k = 0; k < 3; ++k) gaps[i / 3][i % 3] += d[3 * k + i / 3] * d[3 * k + i % 3];
             ++edges;
             h = gproji_rotate(mesh, h);
         } while (h != start);
     }
     for (i = 0; i < 3; ++i)
-        for (j = 0; j < 3; ++j) closing[i][j] /= edges;
+        for (j = 0; j < 3; ++j) gaps[i][j] /= edges;
     /* 2. `wanted` in the principal directions that close as well as any; all directions if hardly half is left. */
-    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) gproji_jacobi_sweep(closing, v);
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) gproji_jacobi_sweep(gaps, v);
     for (k = 1; k < 3; ++k)
-        if (closing[k][k] < closing[best][best]) best = k;
-    least = gproji_fmax(closing[best][best], 0);
+        if (gaps[k][k] < gaps[best][best]) best = k;
+    least = gproji_fmax(gaps[best][best], 0);
     gproji_set3(0, 0, 0, m);
     for (k = 0; k < 3; ++k) {
-        if (closing[k][k] > 10 * least + 1e-10) continue;
+        if (gaps[k][k] > 10 * least + 1e-10) continue;
         gproji_set3(v[0][k], v[1][k], v[2][k], column);
         gproji_add_scaled3(gproji_dot3(column, wanted), column, m);
     }
@@ -17332,13 +17330,15 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
     gproji_pool pool;
+    bool taken;
     int32_t v, at;
     gproji_pool_start(&pool, heap);
     work.first = work.last = 0;
     work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
     work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
     work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
-    for (v = 0; !pool.failed && v < mesh->vertex_count; ++v) {
+    taken = !pool.failed;
+    for (v = 0; taken && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
         /* 1. Reflections along a breadth-first tree, which keeps their products short. */
@@ -17367,7 +17367,7 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
         }
     }
     gproji_pool_give_all(&pool);
-    return !pool.failed;
+    return taken;
 }
 
 /* -- the field for a face offset -- */
@@ -19321,7 +19321,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* -- what the builders share -- */
 
 /* Adds a part for `count` entries, which the builder fills in; NULL after an error. */
-GPROJI_NOINLINE gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
+GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
     part = (gproji_part *)gproji_take_zeroed(&form->own, 1, sizeof *part);
@@ -19360,7 +19360,7 @@ GPROJI_INTERNAL int32_t *gproji_part_unknowns(gproji_part *part, int32_t count) 
 }
 
 /* Adds the group of a part, which has no rows yet. Returns the group, -1 after an error, or if there is no part. */
-GPROJI_NOINLINE int32_t gproji_add_group(gproji_part *part, double weight) {
+GPROJI_INTERNAL int32_t gproji_add_group(gproji_part *part, double weight) {
     const gproji_rule *rule = part ? part->rule : NULL;
     gproj_group group;
     if (!part) return -1;
