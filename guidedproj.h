@@ -7682,9 +7682,13 @@ typedef struct gproji_tally {
     int32_t row;    /* the first that has it; -1: there are no rows */
 } gproji_tally;
 
-/* What a group's rows are to steps. All but ordinary ones are not in merit, residual and verdict. */
+static const double gproji_guard_slack = 0.2; /* steps may violate a guard's rows by so much */
+
+/* What a group's rows are to steps. Those from GPROJI_GUARD on are not in merit, residual and verdict. */
 typedef enum gproji_role {
     GPROJI_ORDINARY,
+    GPROJI_LAZY,      /* bounds for whose sake a good step is not found again, however near steps lead */
+    GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
     GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added on demand and are no structure */
     GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
@@ -7724,7 +7728,6 @@ typedef struct gproji_group {
         double slack;        /* steps may violate its rows by so much */
         int32_t activations; /* how often dormant rows were activated */
     } guard;
-    bool lazy; /* a bound for whose sake a good step is not found again, however near steps lead */
 
     int32_t row_count;
     gproji_row *row;
@@ -8222,16 +8225,11 @@ GPROJI_INTERNAL void gproji_declare_zero_sum(gproj_system *s, int32_t group) {
     s->group[group].zero_sum = s->group[group].row_count;
 }
 
-/* Declares that rows to come are dense, and known by few numbers each (gproj_group.global). */
-GPROJI_INTERNAL void gproji_declare_global(gproj_system *s, int32_t group) { s->group[group].global = true; }
-
-/* Declares bounds for whose sake a good step is not found again, however near steps lead. */
-GPROJI_INTERNAL void gproji_declare_lazy(gproj_system *s, int32_t group) { s->group[group].lazy = true; }
-
-/* Declares what the rows are to steps. slack: steps may violate a guard's rows by so much. */
-GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_role role, double slack) {
+/* Declares what the rows are to steps; before there are any. */
+GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_role role) {
     s->group[group].role = role;
-    s->group[group].guard.slack = slack;
+    s->group[group].global = s->group[group].global || role == GPROJI_DENSE;
+    s->group[group].guard.slack = role == GPROJI_GUARD ? gproji_guard_slack : 0;
 }
 
 /* Declares that a row has several variables of the block that begins with this one. */
@@ -9136,7 +9134,7 @@ GPROJI_INTERNAL void gproji_evaluate(gproj_system *s) {
             gproji_group *g = &s->group[i];
             if (g->global != (global == 1)) continue;
             g->tally.first_task = INT32_MAX;
-            if (g->role != GPROJI_ORDINARY && !(g->weight > 0)) continue;
+            if (g->role >= GPROJI_GUARD && !(g->weight > 0)) continue;
             g->tally.weight = g->weight;
             g->tally.first_task = tasks;
             tasks += gproji_group_tasks(g);
@@ -10774,7 +10772,7 @@ GPROJI_INTERNAL bool gproji_set_weights(gproji_loop *loop, int32_t n) {
 }
 
 /* Does the group count in merit and residual? */
-GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && g->role == GPROJI_ORDINARY; }
+GPROJI_INTERNAL bool gproji_group_counts(const gproji_group *g) { return g->weight > 0 && g->role < GPROJI_GUARD; }
 
 GPROJI_INTERNAL bool gproji_wishes_are_on(const gproj_system *s) {
     int32_t i;
@@ -11279,8 +11277,8 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
             }
             if (active == row->active) continue;
             row->active = active;
-            changed = changed || !g->lazy;
-            lazy = lazy || g->lazy;
+            changed = changed || g->role != GPROJI_LAZY;
+            lazy = lazy || g->role == GPROJI_LAZY;
         }
     }
     if (changed || !lazy) return changed;
@@ -19085,6 +19083,7 @@ typedef struct gproji_rule {
     gproj_kind kind;
     gproj_place place;
     gproji_own own;
+    gproji_role role;
     const gproji_acts *acts; /* NULL: it has rows, and that is all */
 } gproji_rule;
 
@@ -19372,6 +19371,7 @@ GPROJI_INTERNAL int32_t gproji_add_group(gproji_part *part, double weight) {
     group.refresh = rule->acts ? rule->acts->refresh : NULL;
     group.refresh_user = part;
     part->group = gproj_system_add_group(part->form->system, &group);
+    if (part->group >= 0) gproji_declare_role(part->form->system, part->group, rule->role);
     return part->group;
 }
 
@@ -19515,16 +19515,18 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* -- points: fixed vertices, handles, closeness -- */
 
-static const gproji_rule gproji_fixed_rule = {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                              NULL};
+static const gproji_rule gproji_fixed_rule = {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                              GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
 static const gproji_rule gproji_fixed_boundary_rule = {"fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                       GPROJI_OWN_NONE, NULL};
+                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
 static const gproji_rule gproji_fixed_corners_rule = {"fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                      GPROJI_OWN_NONE, NULL};
-static const gproji_rule gproji_targets_rule = {"targets", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
-static const gproji_rule gproji_closeness_rule = {"closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
-static const gproji_rule gproji_default_closeness_rule = {"closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_CLOSENESS, NULL};
+                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+static const gproji_rule gproji_targets_rule = {"targets",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+static const gproji_rule gproji_closeness_rule = {"closeness",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_default_closeness_rule = {"closeness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_CLOSENESS, GPROJI_ORDINARY, NULL};
 
 /* Rows v - p = 0, one a coordinate, for each vertex of the part; p = targets[3 k..] in the mesh's units, or NULL: the
    original places. */
@@ -19661,10 +19663,10 @@ GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, i
 }
 
 static const gproji_acts gproji_normal_acts = {NULL, gproji_start_normals, gproji_settle_normals, NULL};
-static const gproji_rule gproji_planarity_rule = {"planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                  &gproji_normal_acts};
+static const gproji_rule gproji_planarity_rule = {"planarity",     GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
+                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_normal_acts};
 static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                         GPROJI_OWN_NONE, &gproji_normal_acts};
+                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_normal_acts};
 
 /* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). The
    part's group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by
@@ -19845,10 +19847,10 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
 
 static const gproji_acts gproji_gliding_acts = {gproji_refresh_gliding, gproji_start_gliding, NULL,
                                                 gproji_pass_gliding};
-static const gproji_rule gproji_gliding_rule = {"gliding", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                                &gproji_gliding_acts};
+static const gproji_rule gproji_gliding_rule = {"gliding",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_gliding_acts};
 static const gproji_rule gproji_gliding_boundary_rule = {"gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                         GPROJI_OWN_NONE, &gproji_gliding_acts};
+                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_gliding_acts};
 
 /* Takes what gliding keeps; NULL after an error. */
 GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
@@ -19951,8 +19953,8 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
 }
 
 static const gproji_acts gproji_reference_acts = {gproji_refresh_reference, NULL, NULL, NULL};
-static const gproji_rule gproji_reference_rule = {"reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                                  &gproji_reference_acts};
+static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_reference_acts};
 
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
     gproji_part *part = gproji_new_selected_part(form, &gproji_reference_rule, gproji_select_all);
@@ -20063,8 +20065,8 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
     }
 }
 
-static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
 
 GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
     gproj_term *term;
@@ -20078,7 +20080,8 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? group : -1;
 }
 
-static const gproji_rule gproji_fairness_rule = {"fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
 
 GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
     gproj_term *term;
@@ -20132,8 +20135,8 @@ GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system,
 }
 
 static const gproji_acts gproji_tangential_acts = {gproji_refresh_tangential, NULL, NULL, NULL};
-static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE, &gproji_tangential_acts};
+static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_tangential_acts};
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
@@ -20192,8 +20195,8 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
 }
 
 static const gproji_acts gproji_gauss_acts = {gproji_refresh_gauss, NULL, NULL, NULL};
-static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                              &gproji_gauss_acts};
+static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
+                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_gauss_acts};
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -20297,7 +20300,8 @@ GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t ed
     return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
 }
 
-static const gproji_rule gproji_lengths_rule = {"lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
+                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 
 /* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
@@ -20333,7 +20337,7 @@ GPROJI_INTERNAL void gproji_start_length(gproji_part *part) {
 
 static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_length, NULL, NULL};
 static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                      GPROJI_OWN_NONE, &gproji_equal_lengths_acts};
+                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equal_lengths_acts};
 
 /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
@@ -20388,8 +20392,8 @@ GPROJI_INTERNAL void gproji_start_midsphere(gproji_part *part) {
 }
 
 static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, NULL, NULL};
-static const gproji_rule gproji_midsphere_rule = {"midsphere", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
-                                                  &gproji_midsphere_acts};
+static const gproji_rule gproji_midsphere_rule = {"midsphere",     GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
+                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_midsphere_acts};
 
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_midsphere_rule, count, edges);
@@ -20518,14 +20522,14 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
 }
 
 static const gproji_acts gproji_plane_acts = {NULL, gproji_start_planes, NULL, NULL};
-static const gproji_rule gproji_coplanar_rule = {"coplanar", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                                 &gproji_plane_acts};
-static const gproji_rule gproji_collinear_rule = {"collinear", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                                  &gproji_plane_acts};
+static const gproji_rule gproji_coplanar_rule = {"coplanar",      GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
+static const gproji_rule gproji_collinear_rule = {"collinear",     GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
 static const gproji_rule gproji_planar_boundary_rule = {"planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                        GPROJI_OWN_NONE, &gproji_plane_acts};
+                                                        GPROJI_OWN_NONE,   GPROJI_ORDINARY,  &gproji_plane_acts};
 static const gproji_rule gproji_straight_boundary_rule = {"straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE, &gproji_plane_acts};
+                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY,  &gproji_plane_acts};
 
 /* Makes a part one with planes (1) or lines (2), with a group without rows. */
 GPROJI_INTERNAL bool gproji_begin_planes(gproji_part *part, int32_t planes, double weight) {
@@ -20606,7 +20610,7 @@ GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
 }
 
 static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                         GPROJI_OWN_NONE, NULL};
+                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  NULL};
 
 /* -- directions of edges, lifting -- */
 
@@ -20639,7 +20643,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
 }
 
 static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                            GPROJI_OWN_NONE, NULL};
+                                                            GPROJI_OWN_NONE,       GPROJI_ORDINARY,  NULL};
 
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
    and v_1. */
@@ -20662,7 +20666,8 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
     return gproji_form_ready(form) ? group : -1;
 }
 
-static const gproji_rule gproji_lifting_rule = {"lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     int32_t group, i;
@@ -20731,8 +20736,8 @@ GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *
 }
 
 static const gproji_acts gproji_circularity_acts = {NULL, gproji_start_axis_points, gproji_settle_axis_points, NULL};
-static const gproji_rule gproji_circularity_rule = {"circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                    &gproji_circularity_acts};
+static const gproji_rule gproji_circularity_rule = {"circularity",   GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
+                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_circularity_acts};
 
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
@@ -20813,8 +20818,8 @@ GPROJI_INTERNAL void gproji_start_cones(gproji_part *part) {
 }
 
 static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, gproji_start_cones, gproji_settle_cones, NULL};
-static const gproji_rule gproji_conicality_rule = {"conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, GPROJI_OWN_NONE,
-                                                   &gproji_conicality_acts};
+static const gproji_rule gproji_conicality_rule = {"conicality",    GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_conicality_acts};
 
 /* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
    edge e between faces f and g: a is in the plane of e and n_f + n_g. */
@@ -20864,8 +20869,8 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     return gproji_form_ready(form) ? part->group : -1;
 }
 
-static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                       NULL};
+static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH,      GPROJ_PLACE_FACE,
+                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY, NULL};
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     int32_t group, f, k, c;
@@ -20948,8 +20953,8 @@ GPROJI_INTERNAL void gproji_start_area(gproji_part *part) {
 }
 
 static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_area, NULL, NULL};
-static const gproji_rule gproji_equal_areas_rule = {"equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                    &gproji_equal_areas_acts};
+static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,      GPROJ_PLACE_FACE,
+                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_equal_areas_acts};
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
@@ -20995,7 +21000,6 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
         return -1;
     }
     gproji_add_group(part, weight);
-    if (part->group >= 0) gproji_declare_global(form->system, part->group);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
     gproji_give(&form->own, term, (size_t)count, sizeof *term);
@@ -21021,8 +21025,8 @@ GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int
 }
 
 static const gproji_acts gproji_volume_acts = {gproji_refresh_volume, NULL, NULL, NULL};
-static const gproji_rule gproji_volume_rule = {"volume", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
-                                               &gproji_volume_acts};
+static const gproji_rule gproji_volume_rule = {"volume",        GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
+                                               GPROJI_OWN_NONE, GPROJI_DENSE,     &gproji_volume_acts};
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
     gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
@@ -21066,8 +21070,8 @@ GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
-static const gproji_rule gproji_length_bounds_rule = {"length bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
-                                                      NULL};
+static const gproji_rule gproji_length_bounds_rule = {"length bounds", GPROJ_BOUND,     GPROJ_PLACE_EDGE,
+                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
 
 /* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
@@ -21111,8 +21115,8 @@ GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_area_bounds_acts = {gproji_refresh_area_bounds, NULL, NULL, NULL};
-static const gproji_rule gproji_area_bounds_rule = {"area bounds", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                    &gproji_area_bounds_acts};
+static const gproji_rule gproji_area_bounds_rule = {"area bounds",   GPROJ_BOUND,     GPROJ_PLACE_FACE,
+                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_area_bounds_acts};
 
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
@@ -21205,14 +21209,14 @@ GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32
 }
 
 static const gproji_acts gproji_total_acts = {gproji_refresh_cost, NULL, NULL, NULL};
-static const gproji_rule gproji_total_area_rule = {"total area", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
-                                                   &gproji_total_acts};
-static const gproji_rule gproji_total_area_bounds_rule = {"total area bounds", GPROJ_BOUND, GPROJ_PLACE_NONE,
-                                                          GPROJI_OWN_NONE, &gproji_total_acts};
-static const gproji_rule gproji_cost_rule = {"cost", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
-                                             &gproji_total_acts};
-static const gproji_rule gproji_cost_bounds_rule = {"cost bounds", GPROJ_BOUND, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
-                                                    &gproji_total_acts};
+static const gproji_rule gproji_total_area_rule = {"total area",    GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
+                                                   GPROJI_OWN_NONE, GPROJI_DENSE,     &gproji_total_acts};
+static const gproji_rule gproji_total_area_bounds_rule = {"total area bounds", GPROJ_BOUND,  GPROJ_PLACE_NONE,
+                                                          GPROJI_OWN_NONE,     GPROJI_DENSE, &gproji_total_acts};
+static const gproji_rule gproji_cost_rule = {"cost",          GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
+                                             GPROJI_OWN_NONE, GPROJI_DENSE,     &gproji_total_acts};
+static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND,  GPROJ_PLACE_NONE,
+                                                    GPROJI_OWN_NONE, GPROJI_DENSE, &gproji_total_acts};
 
 /* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
@@ -21311,8 +21315,8 @@ GPROJI_INTERNAL void gproji_start_unknowns(gproji_part *part) {
 }
 
 static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, NULL};
-static const gproji_rule gproji_rows_rule = {"rows", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, GPROJI_OWN_NONE,
-                                             &gproji_rows_acts};
+static const gproji_rule gproji_rows_rule = {"rows",          GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
+                                             GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_rows_acts};
 
 /* A rule with the caller's name. */
 typedef struct gproji_own_rule {
@@ -21637,8 +21641,8 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_equilibrium_acts = {gproji_refresh_equilibrium, NULL, NULL, NULL};
-static const gproji_rule gproji_equilibrium_rule = {"equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                    GPROJI_OWN_NONE, &gproji_equilibrium_acts};
+static const gproji_rule gproji_equilibrium_rule = {"equilibrium",   GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equilibrium_acts};
 
 /* Adds a vertex's rows (1). `spoke`: work, 2 numbers for each edge there; `term`: work for a row. */
 GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
@@ -21867,9 +21871,10 @@ GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     return gproji_form_ready(form) && gproji_need_statics(form, name, &form->error) == GPROJ_OK;
 }
 
-static const gproji_rule gproji_compression_rule = {"compression", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
-                                                    NULL};
-static const gproji_rule gproji_tension_rule = {"tension", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE, NULL};
+static const gproji_rule gproji_compression_rule = {"compression",   GPROJ_BOUND, GPROJ_PLACE_EDGE,
+                                                    GPROJI_OWN_NONE, GPROJI_LAZY, NULL};
+static const gproji_rule gproji_tension_rule = {"tension",       GPROJ_BOUND, GPROJ_PLACE_EDGE,
+                                                GPROJI_OWN_NONE, GPROJI_LAZY, NULL};
 
 /* sign w >= 0. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
@@ -21878,7 +21883,6 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rul
     if (!gproji_has_statics(form, rule->name) || !gproji_take_list(form, rule->name, GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     group = gproji_new_group(form, rule, weight);
-    if (group >= 0) gproji_declare_lazy(form->system, group);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
@@ -21933,8 +21937,8 @@ GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int
 }
 
 static const gproji_acts gproji_stress_acts = {gproji_refresh_stress, NULL, NULL, NULL};
-static const gproji_rule gproji_stress_rule = {"stress bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, GPROJI_OWN_NONE,
-                                               &gproji_stress_acts};
+static const gproji_rule gproji_stress_rule = {"stress bounds", GPROJ_BOUND,     GPROJ_PLACE_EDGE,
+                                               GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_stress_acts};
 
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight) {
@@ -21987,8 +21991,8 @@ GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *sys
 }
 
 static const gproji_acts gproji_force_fairness_acts = {gproji_refresh_force_fairness, NULL, NULL, NULL};
-static const gproji_rule gproji_force_fairness_rule = {"force fairness", GPROJ_WISH, GPROJ_PLACE_FACE, GPROJI_OWN_NONE,
-                                                       &gproji_force_fairness_acts};
+static const gproji_rule gproji_force_fairness_rule = {"force fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
+                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY, &gproji_force_fairness_acts};
 
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -22318,8 +22322,8 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     return uniform;
 }
 
-static const gproji_rule gproji_force_guidance_rule = {"force guidance", GPROJ_WISH, GPROJ_PLACE_EDGE,
-                                                       GPROJI_OWN_FORCES, NULL};
+static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,      GPROJ_PLACE_EDGE,
+                                                       GPROJI_OWN_FORCES, GPROJI_ORDINARY, NULL};
 
 /* Adds the group that draws the forces to their start. */
 GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
@@ -22520,8 +22524,8 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
    no part of residual and verdict. Where the mesh slides to the nearest one they ask for 0.1, and a step is refused that
    takes 3/4 of a face's area. */
 
-static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_slack = 0.2,
-                    gproji_guard_small = 0.1, gproji_guard_kept = 0.25, gproji_guard_area = 1e-4;
+static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_small = 0.1,
+                    gproji_guard_kept = 0.25, gproji_guard_area = 1e-4;
 enum {
     GPROJI_GUARD_DEGREE = 64,
     GPROJI_GUARD_LONGER = 2
@@ -22593,8 +22597,8 @@ GPROJI_INTERNAL void gproji_pass_guard(gproji_part *part, gproji_stream *stream,
 }
 
 static const gproji_acts gproji_guard_acts = {gproji_refresh_guard, NULL, NULL, gproji_pass_guard};
-static const gproji_rule gproji_guard_rule = {"guard", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_GUARD,
-                                              &gproji_guard_acts};
+static const gproji_rule gproji_guard_rule = {"guard",          GPROJ_BOUND,  GPROJ_PLACE_FACE,
+                                              GPROJI_OWN_GUARD, GPROJI_GUARD, &gproji_guard_acts};
 
 /* Adds the guard, with all rows; a form has one. */
 GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
@@ -22610,7 +22614,6 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     part->data = guard;
     guard->area = (double *)gproji_part_take(part, 3 * (int64_t)count, sizeof *guard->area);
     if (!guard->area || gproji_add_group(part, 0) < 0) return;
-    gproji_declare_role(form->system, part->group, GPROJI_GUARD, gproji_guard_slack);
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->vertex[count++] = f;
@@ -22885,8 +22888,8 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
 }
 
 static const gproji_acts gproji_corner_acts = {gproji_refresh_corners, NULL, NULL, gproji_pass_corners};
-static const gproji_rule gproji_corner_rule = {"corners", GPROJ_BOUND, GPROJ_PLACE_FACE, GPROJI_OWN_CORNERS,
-                                               &gproji_corner_acts};
+static const gproji_rule gproji_corner_rule = {"corners",          GPROJ_BOUND,      GPROJ_PLACE_FACE,
+                                               GPROJI_OWN_CORNERS, GPROJI_SAFEGUARD, &gproji_corner_acts};
 
 /* Adds the group, without rows yet, and its arrays; a form has one. */
 GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
@@ -22902,7 +22905,7 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     guard->marked = (uint8_t *)gproji_part_take(part, corners, 1);
     if (!gproji_form_ready(form)) return;
     if (corners > 0) memset(guard->row, -1, (size_t)corners * sizeof *guard->row);
-    if (gproji_add_group(part, 0) >= 0) gproji_declare_role(form->system, part->group, GPROJI_SAFEGUARD, 0);
+    gproji_add_group(part, 0);
 }
 
 /* Sets the guard for a solve that begins: no corner acts yet. */
@@ -23349,7 +23352,7 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
         const gproji_group *g = gproji_group_at(form->system, i);
         const gproji_part *part = gproji_part_of(form, i);
         gproji_own own = part ? part->rule->own : GPROJI_OWN_NONE;
-        if (g->role == GPROJI_ORDINARY && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
+        if (g->role < GPROJI_GUARD && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
             g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0)
             return true;
     }
@@ -23370,10 +23373,10 @@ enum {
     GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
 };
 
-static const gproji_rule gproji_smooth_change_rule = {"smooth change", GPROJ_WISH, GPROJ_PLACE_NONE, GPROJI_OWN_METRIC,
-                                                      NULL};
-static const gproji_rule gproji_force_change_rule = {"force change", GPROJ_WISH, GPROJ_PLACE_NONE, GPROJI_OWN_BRAKE,
-                                                     NULL};
+static const gproji_rule gproji_smooth_change_rule = {"smooth change",   GPROJ_WISH,    GPROJ_PLACE_NONE,
+                                                      GPROJI_OWN_METRIC, GPROJI_METRIC, NULL};
+static const gproji_rule gproji_force_change_rule = {"force change",   GPROJ_WISH,   GPROJ_PLACE_NONE,
+                                                     GPROJI_OWN_BRAKE, GPROJI_BRAKE, NULL};
 
 /* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
@@ -23382,7 +23385,6 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     gproj_system *s = form->system;
     int32_t group = gproji_new_group(form, &gproji_smooth_change_rule, 0), e, i, k, *local;
     if (group < 0) return;
-    gproji_declare_role(s, group, GPROJI_METRIC, 0);
     for (i = 0; i < 3 * mesh->vertex_count && gproji_form_ready(form); ++i) {
         local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
         if (!local) return;
@@ -23405,7 +23407,6 @@ GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
     gproj_system *s = form->system;
     int32_t group = gproji_new_group(form, &gproji_force_change_rule, 0), e;
     if (group < 0) return;
-    gproji_declare_role(s, group, GPROJI_BRAKE, 0);
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
         int32_t *local;
         if (form->statics->force[e] < 0) continue;
@@ -23416,10 +23417,10 @@ GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
 
 /* -- the groups that the library adds to a form -- */
 
-static const gproji_rule gproji_drag_fairness_rule = {"drag fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX,
-                                                      GPROJI_OWN_DRAG_FAIRNESS, NULL};
-static const gproji_rule gproji_drag_handles_rule = {"drag handles", GPROJ_WISH, GPROJ_PLACE_VERTEX,
-                                                     GPROJI_OWN_DRAG_HANDLES, NULL};
+static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                      GPROJI_OWN_DRAG_FAIRNESS, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_drag_handles_rule = {"drag handles",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                     GPROJI_OWN_DRAG_HANDLES, GPROJI_ORDINARY, NULL};
 
 GPROJI_INTERNAL void gproji_add_drag_fairness(gproj_form *form) {
     gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);

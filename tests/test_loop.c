@@ -1169,7 +1169,7 @@ GPROJT_TEST(metric_comes_back) {
     int32_t i;
     gprojt_add_group(s, "product", GPROJ_CONSTRAINT, 1);
     gprojt_add_group(s, "metric", GPROJ_WISH, 0.1);
-    gproji_declare_role(s, 1, GPROJI_METRIC, 0);
+    gproji_declare_role(s, 1, GPROJI_METRIC);
     gproj_system_add_row(s, 0, 1, &product, -2, 0);
     for (i = 0; i < 2; ++i) {
         linear[i] = gprojt_term(i, -1, 1);
