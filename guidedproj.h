@@ -1579,9 +1579,30 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
    iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
+/* Begins that release in frames, for programs that draw between iterations: gproj_step goes on with it, and moves are
+   refused from now on. gproj_drag_end takes the iterations that are left and gives the verdict; the bytes are those of
+   gproj_drag_end alone. gproj_drag_cancel goes back at any time.
+
+       gproj_drag_release(drag);
+       while (gproj_step_is_on(form)) {
+           gproj_step(form, 0.01);
+           draw(mesh);
+       }
+       result = gproj_drag_end(drag);
+
+   After gproj_step_stop, or a gproj_solve that is refused meanwhile, gproj_drag_end leaves the mesh as it is:
+   GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
+   gproj_drag_end tells. A state saved before the end has the release's weights. */
+GPROJ_API bool gproj_drag_release(gproj_drag *drag);
 /* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
    during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
+/* Finds the vertices of a handle with reach: those nearer to `vertex` than `reach` (in the mesh's units, on the shortest
+   path of edges), itself first, in the order of their distances d, with the weights (1 - d^2 / reach^2)^2. One handle
+   with this list takes its neighbourhood along where a vertex alone makes a spike. `vertices` and `weights` have room for
+   vertex_count numbers each. Returns how many were found, 1 with a reach of 0; 0: there is no such vertex, or the form
+   has an error. Work: a pass over all vertices, and for each one found a pass over the border of those found. */
+GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
@@ -23275,6 +23296,7 @@ struct gproj_drag {
     gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
+    bool released; /* the release has begun; the form's solve in frames is its */
     gproji_pool pool;
 };
 
@@ -23487,6 +23509,9 @@ GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     if (!gproji_form_ready(drag->form)) {
         gproji_pass_on(&drag->error, gproj_form_error(drag->form));
+    } else if (drag->released) {
+        gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "drag: the handles have been released; end or cancel it");
     } else if (!gproji_has_structure(drag->form->system, drag->structure)) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
@@ -23742,28 +23767,12 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, form->release.handles, handles);
 }
 
-/* Releases the form: solves it from the mesh before the drag, guided to x. */
-GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
-    gproj_result result;
-    gproj_system *s;
-    gproj_form *form;
-    gproji_group *fairness, *at;
-    int32_t group, r, k, c;
+/* Gives the groups of the release their rows: fairness as before the drag, handles at x, all else where it was. */
+GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
+    gproj_system *s = drag->form->system;
+    int32_t group = drag->form->release.handles, r, k, c;
+    gproji_group *fairness = &s->group[drag->form->release.fairness], *at = &s->group[group];
     int64_t e;
-    if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
-    form = drag->form;
-    form->drag = NULL;
-    gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (!gproji_form_ready(form)) {
-        result = gproji_failed_result(gproj_form_error(form));
-        gproji_destroy_drag(drag);
-        return result;
-    }
-    s = form->system;
-    group = form->release.handles;
-    fairness = &s->group[form->release.fairness], at = &s->group[group];
     /* 1. Fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
         fairness->row[r].constant = 0;
@@ -23787,11 +23796,85 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -s->x[row]);
             }
     }
+}
+
+GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
+    gproj_form *form;
+    if (!drag || drag->released) return false;
+    form = drag->form;
+    drag->released = true;
+    gproji_reset_mesh(form);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    if (!gproji_form_ready(form)) return false;
+    gproji_set_release(drag);
     gproji_schedule_release(drag, true);
-    result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
-    gproji_schedule_release(drag, false);
+    /* A solve is refused during a drag, but for this one. */
+    form->drag = NULL;
+    form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+    form->drag = drag;
+    return form->solve.on;
+}
+
+GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
+    gproj_result result;
+    gproj_form *form;
+    if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
+    form = drag->form;
+    gproj_drag_release(drag);
+    while (gproj_step_is_on(form)) gproj_step(form, 0);
+    if (!gproji_form_ready(form)) {
+        result = gproji_failed_result(gproj_form_error(form));
+    } else {
+        result = form->solve.loop.result;
+        if (!form->solve.finished) result.outcome = GPROJ_CANCELLED;
+        form->solve.finished = false;
+        gproji_schedule_release(drag, false);
+    }
+    if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);
     return result;
+}
+
+/* -- reach -- */
+
+GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights) {
+    const gproj_mesh *mesh;
+    double *distance;
+    int32_t seen = 1, done = 0, count, k;
+    if (!gproji_form_ready(form) || vertex < 0 || vertex >= form->mesh->vertex_count || !vertices || !weights) return 0;
+    mesh = form->mesh;
+    distance = (double *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *distance);
+    if (!distance) {
+        gproji_fail_memory(&form->error);
+        return 0;
+    }
+    for (k = 0; k < mesh->vertex_count; ++k) distance[k] = HUGE_VAL;
+    distance[vertex] = 0, vertices[0] = vertex;
+    /* Dijkstra (1959). vertices[0 .. done - 1] are settled, those up to `seen` are the border, without an order: within
+       a reach that a hand can drag it is short. */
+    for (; done < seen; ++done) {
+        int32_t best = done, at, h, first;
+        for (k = done + 1; k < seen; ++k)
+            if (distance[vertices[k]] < distance[vertices[best]]) best = k;
+        at = vertices[best], vertices[best] = vertices[done], vertices[done] = at;
+        first = h = mesh->vertex_halfedge[at];
+        while (h >= 0) {
+            int32_t to = mesh->origin[mesh->twin[h]];
+            double d =
+                distance[at] + gproji_distance3(mesh->position + 3 * (size_t)at, mesh->position + 3 * (size_t)to);
+            if (d < reach && distance[to] == HUGE_VAL) vertices[seen++] = to;
+            if (d < reach && d < distance[to]) distance[to] = d;
+            h = mesh->next[mesh->twin[h]];
+            if (h == first) break;
+        }
+    }
+    for (count = 0; count < done; ++count) {
+        double t = count ? distance[vertices[count]] / reach : 0;
+        weights[count] = (1 - t * t) * (1 - t * t);
+    }
+    gproji_give(&form->own, distance, (size_t)mesh->vertex_count, sizeof *distance);
+    return count;
 }
 
 #endif /* GPROJI_IMPLEMENTED */
