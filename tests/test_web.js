@@ -218,6 +218,139 @@ const tests = {
         await idle();
         check(await saved() === after, 'redo does not give the same bytes');
     },
+    /* The verdicts of the gallery; forces in their colours. */
+    async the_gallery_is_solved() {
+        for (const name of await run(() => gallery.map(g => g.name).filter(n => n !== 'Large roof'))) {
+            await choose(name);
+            await shoot(`${name}_opened`);
+            const verdict = await solve(), picture = await count(await shoot(`${name}_solved`));
+            const holds = /^all constraints hold/.test(verdict) && !/spoiled/.test(verdict);
+            check(holds === (name !== 'Impossible'), `${name}: ${verdict}`);
+            check(picture.mesh > 0.1, `${name}: the mesh covers ${picture.mesh}`);
+            if (name === 'Shell') check(picture.blue > 0.001 && picture.red > 0.001, `${name}: forces are seen as`, picture);
+            else check((picture.warn > 0.01) === (name === 'Impossible'), `${name}: after the solve there is`, picture);
+            if (name !== 'Impossible') continue;
+            check(/planarity/.test(verdict) && /boundary|fixed/.test(verdict), 'the contradiction is told so:', verdict);
+            const before = await run(() => drawing.view.target.slice());
+            await click('#verdict');
+            await until(before => drawing.view.target.some((t, k) => Math.abs(t - before[k]) > 1e-3), 'the place that the verdict names', before);
+        }
+    },
+    async what_is_no_mesh_is_refused() {
+        await choose('Roof');
+        const before = await saved(), broken = path.join(work, 'broken.obj'), noise = path.join(work, 'noise.obj');
+        fs.writeFileSync(broken, 'v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 1 2 7\n');
+        await upload(broken);
+        await until(() => document.body.dataset.error, 'the refusal of a broken file');
+        const sentence = await run(() => document.getElementById('sentence').textContent);
+        check(/line 5/.test(sentence) && /broken\.obj/.test(sentence), 'a broken file is refused so:', sentence);
+        check(await saved() === before, 'a broken file changes the mesh');
+        fs.writeFileSync(noise, crypto.randomBytes(50 << 20));
+        await run(() => { document.body.dataset.error = ''; });
+        await upload(noise);
+        await until(() => document.body.dataset.error, 'the refusal of noise');
+        check(await saved() === before, 'noise changes the mesh');
+        fs.rmSync(noise);
+        check(/hold/.test(await solve()), 'after noise it does not solve');
+    },
+    async after_a_trap_it_goes_on() {
+        await choose('Roof');
+        await solve();
+        const before = await saved();
+        await run(() => { document.body.dataset.error = ''; send({does: 'nothing of the kind'}); });
+        await until(() => document.body.dataset.error, 'the sentence about the trap');
+        check(await saved() === before, 'after a trap the mesh is another one');
+        check(/hold/.test(await solve()), 'after a trap it does not solve');
+    },
+    async keys_are_enough() {
+        await choose('Roof');
+        const until_focus = async wanted => {
+            for (let k = 0; k < 80; ++k) {
+                if (await run(wanted => document.activeElement.id === wanted || document.activeElement.textContent === wanted, wanted)) return;
+                await press('\uE004');
+            }
+            check(false, `the tab key does not reach ${wanted}`);
+        };
+        await until_focus('Flat sheet');
+        await run(() => { document.body.dataset.mesh = ''; });
+        await press('\uE007');
+        await until(() => document.body.dataset.mesh === 'flat_sheet.obj', 'the flat sheet by keys');
+        await run(() => { document.body.dataset.verdict = ''; });
+        await press('s');
+        await until(() => document.body.dataset.verdict, 'a verdict by keys');
+        await idle();
+        const before = await saved();
+        await until_focus('canvas');
+        await press(...'n'.repeat(40), '\uE00E');
+        await until(() => !document.getElementById('undo').disabled && document.body.dataset.activity === 'none', 'a nudge');
+        await idle();
+        const nudged = await saved();
+        check(apart(parse(before), parse(nudged)) > 0.05, 'a nudge moves nothing');
+        await call('POST', '/actions', {actions: [{type: 'key', id: 'keys', actions: [{type: 'keyDown', value: '\uE009'},
+            {type: 'keyDown', value: 'z'}, {type: 'keyUp', value: 'z'}, {type: 'keyUp', value: '\uE009'}]}]});
+        await idle();
+        check(await saved() === before, 'control Z does not undo the nudge');
+        const nameless = await run(() => [...document.querySelectorAll('button, input, canvas, pre')].filter(e =>
+            !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.[0]?.textContent.trim() || e.id === 'code')).map(e => e.outerHTML));
+        check(nameless.length === 0, 'without a name:', nameless);
+    },
+    async the_same_elsewhere() {
+        for (const [name, hash] of [['roof', '#mesh=Roof&planar=1&gliding=1&fairness=0.1'],
+            ['roof', '#mesh=Roof&planar=1&fixedCorners=1&closeness=0.05'], ['shell', '#mesh=Shell&equilibrium=1&compression=1&fixedBoundary=1']]) {
+            await open(hash);
+            const folder = fs.mkdtempSync(path.join(work, 'same-'));
+            fs.writeFileSync(path.join(folder, `${name}.obj`), await run(() => new TextDecoder().decode(opened.text)));
+            const [program, command] = await run(() => [asProgram(), asCommand()]), verdict = await solve();
+            const here = parse(await saved());
+            check(/hold/.test(verdict), `${hash}: ${verdict}`);
+            fs.writeFileSync(path.join(folder, 'solve.c'), program);
+            const built = spawnSync('cc', ['-O1', '-Wall', '-Wextra', `-I${root}`, 'solve.c', '-lm', '-o', 'solve'], {cwd: folder, encoding: 'utf8'});
+            check(built.status === 0 && !built.stderr, `${hash}: as C:`, built.stderr);
+            const ran = spawnSync('./solve', {cwd: folder, encoding: 'utf8'});
+            check(ran.status === 0, `${hash}: the program ends with`, ran.status, ran.stdout);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= 1e-9 * meanEdge(here), `${hash}: as C another mesh comes out`);
+            fs.rmSync(path.join(folder, 'solved.obj'));
+            const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
+            check(told.status === 0, `${hash}: the command ends with`, told.status, told.stderr, command);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= 1e-9 * meanEdge(here), `${hash}: as a command another mesh comes out`);
+        }
+    },
+    async on_a_phone() {
+        await cdp('Emulation.setDeviceMetricsOverride', {width: 390, height: 844, deviceScaleFactor: 2, mobile: true});
+        await open();
+        await solve();
+        const wide = await run(() => document.documentElement.scrollWidth);
+        check(wide <= 390, `at 390 px the page is ${wide} wide`);
+        const picture = await count(await shoot('phone'));
+        check(picture.mesh > 0.08, `on a phone the mesh covers ${picture.mesh}`);
+        await cdp('Emulation.clearDeviceMetricsOverride', {});
+    },
+    /* Ten thousand vertices: stop comes through, and so do pictures while it releases. Times are told, not judged. */
+    async large_meshes() {
+        await open('#mesh=Large%20roof&planar=1&fixedCorners=1');
+        await run(() => { document.body.dataset.frames = 0; });
+        await click('#solve');
+        await until(() => document.body.dataset.frames > 0, 'a picture of the large roof');
+        const frames = await run(() => Number(document.body.dataset.frames)), begun = Date.now();
+        if (await run(() => document.body.dataset.activity === 'solve')) await run(() => document.getElementById('stop').click());
+        await idle();
+        console.log(`large roof: stopped within ${Date.now() - begun} ms, after ${frames} pictures`);
+        await shoot('large');
+    },
+    async memory_does_not_grow() {
+        await open();
+        const sizes = await wait(async () => {
+            const sizes = [];
+            for (let k = 0; k < 200; ++k) {
+                memorySize = 0;
+                choose('Tower');
+                while (!memorySize) await new Promise(resolve => setTimeout(resolve, 4));
+                sizes.push(memorySize);
+            }
+            return sizes;
+        });
+        check(sizes[199] === sizes[10], `memory grows from ${sizes[10]} to ${sizes[199]}`);
+    },
 };
 
 async function main() {

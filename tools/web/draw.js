@@ -11,9 +11,11 @@ precision highp float;
 precision highp int;
 uniform highp sampler2D places, values, forces;
 uniform mat4 camera;
+uniform vec3 eye;
 uniform vec2 screen; // in pixels
 ivec2 texel(uint k) { return ivec2(int(k) & ${ROW - 1}, int(k) / ${ROW}); }
 vec3 place(uint v) { return texelFetch(places, texel(v), 0).xyz; }
+vec4 towards(vec3 p, float way) { return camera * vec4(p + normalize(eye - p) * way, 1); } // what is drawn upon faces
 `;
 
 const shaders = {
@@ -26,7 +28,7 @@ void main() {
     value = texelFetch(values, texel(corner.y), 0).x;
     gl_Position = camera * vec4(at, 1);
 }`, `${shaderHead}
-uniform vec3 eye, flatColour, middleColour, warnColour;
+uniform vec3 flatColour, middleColour, warnColour;
 uniform float coloured;
 in vec3 at;
 flat in float value;
@@ -35,7 +37,7 @@ void main() {
     vec3 n = normalize(cross(dFdx(at), dFdy(at))), look = normalize(eye - at);
     if (dot(n, look) < 0.0) n = -n;
     vec3 light = normalize(look + vec3(0, 0, 0.9));
-    float shade = 0.72 + 0.30 * dot(n, light);
+    float shade = 0.78 + 0.24 * dot(n, light);
     // from 1e-4 to 1e-2 mean edge lengths, by the logarithm
     float t = coloured * clamp((log(max(value, 1e-9)) / log(10.0) + 4.0) / 2.0, 0.0, 1.0);
     vec3 tone = t < 0.5 ? mix(flatColour, middleColour, 2.0 * t) : mix(middleColour, warnColour, 2.0 * t - 1.0);
@@ -46,14 +48,14 @@ layout(location = 0) in uvec2 ends;
 uniform float width, byForce;
 flat out float force;
 void main() {
-    vec4 a = camera * vec4(place(ends.x), 1), b = camera * vec4(place(ends.y), 1);
+    float known = byForce * texelFetch(forces, texel(uint(gl_InstanceID)), 0).x, way = 0.004 * (1.0 + abs(known));
+    vec4 a = towards(place(ends.x), way), b = towards(place(ends.y), way);
     vec2 along = (b.xy / b.w - a.xy / a.w) * screen;
     along = length(along) > 1e-6 ? normalize(along) : vec2(1, 0);
-    force = byForce * texelFetch(forces, texel(uint(gl_InstanceID)), 0).x;
+    force = known;
     float wide = width * (1.0 + 7.0 * sqrt(abs(force)));
     vec4 p = (gl_VertexID & 1) == 0 ? a : b;
     p.xy += vec2(-along.y, along.x) * (gl_VertexID < 2 ? wide : -wide) / screen * p.w;
-    p.z -= 0.0006 * p.w * (1.0 + abs(force));
     gl_Position = p;
 }`, `${shaderHead}
 uniform vec3 lineColour, pushColour, pullColour;
@@ -71,11 +73,10 @@ out vec2 at;
 flat out uint kind;
 void main() {
     vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 2.0 - 1.0;
-    vec4 p = camera * vec4(place(which.x), 1);
+    vec4 p = towards(place(which.x), 0.02);
     kind = which.y;
     at = corner;
     p.xy += corner * size * (kind == 1u ? 0.8 : 1.25) / screen * p.w * 2.0;
-    p.z -= 0.004 * p.w;
     gl_Position = p;
 }`, `${shaderHead}
 uniform vec3 fixedColour, handleColour;
@@ -211,9 +212,10 @@ class Drawing {
     /* The camera's matrix, by columns. */
     matrix() {
         const {right, up, back} = this.axes(), eye = this.eye();
-        const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
-        const focal = 3.2 * Math.min(1, aspect), near = Math.max(0.01, this.view.distance - 3), far = this.view.distance + 6;
         const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        const middle = dot(back, eye); // a mesh as it was opened has the radius 1 about the origin
+        const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
+        const focal = 3.2 * Math.min(1, aspect), near = Math.max(0.02, middle - 2), far = Math.max(1, middle + 2);
         const rows = [right, up, back].map(axis => [...axis, -dot(axis, eye)]);
         const depth = (far + near) / (near - far), shift = 2 * far * near / (near - far), m = [];
         for (let k = 0; k < 4; ++k)

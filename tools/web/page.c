@@ -43,7 +43,7 @@ static struct {
     int32_t group[RULES]; /* -1: the form does not have it yet */
     double *is_fixed;     /* a weight for each vertex: 0 or 1 */
     double centre[3], radius;
-    double residual; /* of the last move of a drag */
+    double residual, target[3]; /* of the last move of a drag */
     gproj_result result;
     char sentence[GPROJ_MESSAGE_SIZE];
     void *block;
@@ -354,18 +354,34 @@ bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
         start[1] = gproj_find_reach(page.form, vertex, reach * page.radius, list, weight);
         page.drag = gproj_drag_begin(page.form, &handles, &options, &error);
         if (!page.drag) refuse(error.message);
+        memcpy(page.target, page.mesh->position + 3 * vertex, sizeof page.target);
     }
     free(list), free(weight);
     return page.drag != NULL;
 }
 
-/* Moves the grabbed vertex to a place, relative. False: the sentence says why; the drag goes on. */
+/* Moves the grabbed vertex to a place, relative: in short pieces, because the error grows with the square of a move, and
+   again to the same place while the error is large. Takes no more pieces after a while. False: the sentence says why; the
+   drag goes on. */
 bool EXPORT(page_move) page_move(double x, double y, double z) {
-    double to[3] = {x * page.radius + page.centre[0], y * page.radius + page.centre[1],
-                    z * page.radius + page.centre[2]};
+    const double relative[3] = {x, y, z};
+    double from[3], to[3], at[3], way = 0, begun = page_now();
+    int pieces, k;
     if (!page.drag) return false;
-    if (gproj_drag_move(page.drag, to) != GPROJ_OK) return refuse(gproj_drag_error(page.drag)->message);
-    page.residual = gproj_drag_residual(page.drag);
+    for (k = 0; k < 3; ++k) {
+        from[k] = page.target[k];
+        to[k] = page.target[k] = relative[k] * page.radius + page.centre[k];
+        way += (to[k] - from[k]) * (to[k] - from[k]);
+    }
+    pieces = (int)ceil(fmin(8, sqrt(way) / (0.25 * gproj_mesh_mean_edge_length(page.mesh))));
+    page.residual = 0;
+    for (int piece = 1; piece <= pieces || (page.residual > 0.02 && piece < pieces + 6); ++piece) {
+        bool late = page_now() - begun > 0.1;
+        for (k = 0; k < 3; ++k) at[k] = piece < pieces && !late ? from[k] + (to[k] - from[k]) * piece / pieces : to[k];
+        if (gproj_drag_move(page.drag, at) != GPROJ_OK) return refuse(gproj_drag_error(page.drag)->message);
+        page.residual = gproj_drag_residual(page.drag);
+        if (late) break;
+    }
     return true;
 }
 

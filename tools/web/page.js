@@ -60,7 +60,10 @@ function showState(state) {
     $('undo').disabled = !state.undo;
     $('redo').disabled = !state.redo;
     if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
-    if (activity === 'drag') say(`Dragging: what must hold is off by ${state.residual.toExponential(1)} mean edges.`, 'busy');
+    if (activity === 'drag') {
+        const held = state.behind > mesh.edge / 2 ? ' The vertex stays behind: what must hold lets it go no farther.' : '';
+        say(`Dragging: what must hold is off by ${state.residual.toExponential(1)} mean edges.${held}`, 'busy');
+    }
     document.body.dataset.residual = state.residual;
 }
 
@@ -109,6 +112,7 @@ function select(vertex) {
 const answers = {
     mesh(message) {
         mesh = message;
+        memorySize = message.memory;
         selected = -1;
         drawing.setMesh(mesh);
         unseen = true;
@@ -154,6 +158,7 @@ const answers = {
 
 /* -- meshes -- */
 
+let memorySize = 0; // of the worker's instance, in bytes
 let pending = null; // what is being opened; it becomes `opened` when it is there
 
 function open(name, bytes, preset = null) {

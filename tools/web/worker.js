@@ -8,7 +8,7 @@ let module = null, wasm = null;
 let opened = null;               // {text, settings, snapshot}: what a new instance goes on from
 let activity = 'none';           // 'none', 'drag', 'release' or 'solve'
 let target = null, armed = false; // of a drag; is a turn of work under way?
-let sizes = null, spare = [];    // frame buffers that are at home
+let frameSize = 0, spare = [];   // of a frame in bytes; frame buffers that are at home
 let undo = [], redo = [];
 const channel = new MessageChannel(), decoder = new TextDecoder();
 
@@ -41,6 +41,7 @@ function postFrame() {
     const state = {
         is: 'frame', activity, undo: undo.length, redo: redo.length, outcome: wasm.page_outcome(),
         iterations: wasm.page_iterations(), residual: wasm.page_residual(), spoiled: wasm.page_spoiled(), buffer: null,
+        behind: activity === 'drag' ? wasm.page_behind() : 0,
     };
     if (buffer && wasm.page_frame()) {
         const at = wasm.page_block(0);
@@ -64,9 +65,10 @@ function postMesh(name) {
     const corners = new Uint32Array(wasm.memory.buffer.slice(at, at + 24 * triangles));
     const ends = new Uint32Array(wasm.memory.buffer.slice(at + 24 * triangles, at + 24 * triangles + 8 * edges));
     const size = 4 * (4 * vertices + faces + edges);
-    sizes = {size};
+    frameSize = size;
     spare = [new ArrayBuffer(size), new ArrayBuffer(size)];
-    postMessage({is: 'mesh', name, vertices, faces, edges, corners, ends, edge: wasm.page_reach(1)});
+    postMessage({is: 'mesh', name, vertices, faces, edges, corners, ends, edge: wasm.page_reach(1),
+        memory: wasm.memory.buffer.byteLength});
     postMarks();
 }
 
@@ -144,7 +146,7 @@ const does = {
     open({bytes, name, settings}) {
         if (!give(new Uint8Array(bytes))) return postMessage({is: 'error', sentence: 'there is not enough memory'});
         if (!wasm.page_open(bytes.byteLength))
-            return postMessage({is: 'error', sentence: `${name} was not opened: ${sentence()}`});
+            return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
         opened = {text: bytes, settings: opened?.settings ?? []};
         if (settings) does.set({settings});
@@ -209,7 +211,7 @@ const does = {
         postMessage({is: 'text', off, bytes: bytes(wasm.page_block(0), size).slice()});
     },
     back({buffer}) {
-        if (sizes && buffer.byteLength === sizes.size) spare.push(buffer);
+        if (buffer.byteLength === frameSize) spare.push(buffer);
     },
 };
 
