@@ -237,14 +237,18 @@ class Drawing {
         return 2 * w / (3.2 * Math.min(1, aspect) * this.canvas.clientHeight);
     }
 
-    /* The vertex at a place on the canvas, within `radius` CSS pixels; of several the nearest to the eye. -1: none. */
-    pick(x, y, radius) {
-        const m = this.matrix(), edge = this.mesh ? this.mesh.edge : 0;
+    /* The vertex at a place on the canvas: within 14 CSS pixels, 26 of a finger, but less where edges are short, so that
+       there is room between vertices to turn the view. Of several the nearest to the eye. -1: none. */
+    pick(x, y, finger) {
+        if (!this.mesh) return -1;
+        const m = this.matrix(), {edge} = this.mesh, p = this.places, width = this.canvas.clientWidth / 2, height = this.canvas.clientHeight / 2;
+        const long = edge / this.pixel(this.view.distance), radius = finger ? Math.max(9, Math.min(26, long / 2)) : Math.max(5, Math.min(14, long / 3));
         let best = -1, least = Infinity;
-        for (let v = 0; v < this.counts.vertices; ++v) {
-            const p = this.places.subarray(4 * v, 4 * v + 3), [px, py, w] = this.project(p, m);
-            const off = Math.hypot(px - x, py - y);
-            const cost = w + edge * 0.7 * off / radius; // nearer ones first, then those under the pointer
+        for (let v = 0, k = 0; v < this.counts.vertices; ++v, k += 4) {
+            const w = m[3] * p[k] + m[7] * p[k + 1] + m[11] * p[k + 2] + m[15];
+            const dx = ((m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) / w + 1) * width - x;
+            const dy = (1 - (m[1] * p[k] + m[5] * p[k + 1] + m[9] * p[k + 2] + m[13]) / w) * height - y;
+            const off = Math.sqrt(dx * dx + dy * dy), cost = w + 0.7 * edge * off / radius; // nearer ones first, then those below
             if (off <= radius && cost < least) best = v, least = cost;
         }
         return best;

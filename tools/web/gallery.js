@@ -84,7 +84,7 @@ const gallery = [
     {
         name: 'Impossible', rules: {planar: 1, fixedBoundary: 1},
         hint: 'The fixed boundary is twisted: no middle makes four flat panels. The verdict names what contradicts.',
-        make: () => grid(2, 2, (s, t) => [2 * t - 1, 2 * s - 1, 0.9 * (2 * s - 1) * (2 * t - 1)]),
+        make: () => grid(2, 2, (s, t) => [2 * t - 1, 2 * s - 1, 0.5 * (2 * s - 1) * (2 * t - 1)]),
     },
     {
         name: 'Large roof', rules: {planar: 1, fixedCorners: 1},

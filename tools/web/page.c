@@ -26,7 +26,7 @@ typedef enum rule {
     FIXED_CORNERS,
     GLIDING,
     LIFTING,
-    FIXED, /* the vertices in page.is_fixed */
+    FIXED, /* the vertices in page.is_fixed, at the places where they were fixed */
     FAIRNESS,
     CLOSENESS,
     TANGENTIAL,
@@ -42,6 +42,7 @@ static struct {
     double weight[RULES];
     int32_t group[RULES]; /* -1: the form does not have it yet */
     double *is_fixed;     /* a weight for each vertex: 0 or 1 */
+    double *fixed_at;     /* 3 for each vertex */
     double centre[3], radius;
     double residual, target[3]; /* of the last move of a drag */
     gproj_result result;
@@ -74,15 +75,19 @@ const char *EXPORT(page_sentence) page_sentence(void) { return page.sentence; }
 /* -- meshes -- */
 
 /* Takes the place of the mesh before. */
-static void adopt(gproj_mesh *mesh, double *original, double *is_fixed) {
+static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *is_fixed) {
+    size_t bytes = 3 * sizeof *original * (size_t)mesh->vertex_count;
     double low[3], high[3];
     gproj_drag_cancel(page.drag);
     gproj_form_destroy(page.form);
     gproj_mesh_destroy(page.mesh);
-    free(page.original), free(page.is_fixed);
-    page.mesh = mesh, page.original = original, page.is_fixed = is_fixed;
+    free(page.original), free(page.is_fixed), free(page.fixed_at);
+    page.mesh = mesh, page.original = original, page.is_fixed = is_fixed, page.fixed_at = fixed_at;
     page.form = NULL, page.drag = NULL;
-    memcpy(original, mesh->position, 3 * sizeof *original * (size_t)mesh->vertex_count);
+    page.weight[FIXED] = 0;
+    memset(&page.result, 0, sizeof page.result);
+    memcpy(original, mesh->position, bytes);
+    memcpy(fixed_at, mesh->position, bytes);
     for (int k = 0; k < 3; ++k) {
         low[k] = high[k] = original[k];
         for (int32_t v = 1; v < mesh->vertex_count; ++v) {
@@ -99,16 +104,18 @@ static void adopt(gproj_mesh *mesh, double *original, double *is_fixed) {
 bool EXPORT(page_open) page_open(size_t size) {
     gproj_error error;
     gproj_mesh *mesh = gproj_mesh_read(page.block, size, GPROJ_FORMAT_DETECT, &host, &error);
-    double *original, *is_fixed;
+    double *original, *fixed_at, *is_fixed;
     if (!mesh) return refuse(error.message);
     original = malloc(3 * sizeof *original * (size_t)mesh->vertex_count);
+    fixed_at = malloc(3 * sizeof *fixed_at * (size_t)mesh->vertex_count);
     is_fixed = calloc((size_t)mesh->vertex_count, sizeof *is_fixed);
-    if (!original || !is_fixed || mesh->face_count == 0) {
-        free(original), free(is_fixed);
+    if (!original || !fixed_at || !is_fixed || mesh->face_count == 0) {
+        bool enough = original && fixed_at && is_fixed;
+        free(original), free(fixed_at), free(is_fixed);
         gproj_mesh_destroy(mesh);
-        return refuse(original && is_fixed ? "the file has no faces" : gproj_code_string(GPROJ_ERROR_MEMORY));
+        return refuse(enough ? "the file has no faces" : gproj_code_string(GPROJ_ERROR_MEMORY));
     }
-    adopt(mesh, original, is_fixed);
+    adopt(mesh, original, fixed_at, is_fixed);
     return true;
 }
 
@@ -142,6 +149,23 @@ bool EXPORT(page_marks) page_marks(void) {
     for (int32_t v = 0; out && v < page.mesh->vertex_count; ++v)
         out[v] = (uint8_t)(gproj_mesh_is_boundary_vertex(page.mesh, v) + 2 * (page.is_fixed[v] > 0));
     return out != NULL;
+}
+
+/* The vertices fixed by hand, in the block, as 5 doubles each: number, x, y, z in the mesh's units, and whether that is
+   another place than in the file. Returns how many there are. */
+int32_t EXPORT(page_pins) page_pins(void) {
+    int32_t count = 0, v;
+    double *out;
+    for (v = 0; v < page.mesh->vertex_count; ++v) count += page.is_fixed[v] > 0;
+    out = page_block(5 * sizeof *out * (size_t)(count + 1));
+    for (v = 0; out && v < page.mesh->vertex_count; ++v) {
+        if (!(page.is_fixed[v] > 0)) continue;
+        *out++ = v;
+        memcpy(out, page.fixed_at + 3 * v, 3 * sizeof *out);
+        out[3] = memcmp(out, page.original + 3 * v, 3 * sizeof *out) != 0;
+        out += 4;
+    }
+    return out ? count : 0;
 }
 
 /* Fills the block with floats: for each vertex x, y, z (relative) and 0; for each face its planarity in mean edge lengths;
@@ -220,9 +244,11 @@ void EXPORT(page_set) page_set(int32_t which, double weight) {
     if (which >= 0 && which < RULES) page.weight[which] = weight;
 }
 
-/* Fixes a vertex by hand, or frees it. */
+/* Fixes a vertex by hand where it is, or frees it. */
 void EXPORT(page_fix) page_fix(int32_t vertex, bool fixed) {
-    if (vertex >= 0 && vertex < page.mesh->vertex_count) page.is_fixed[vertex] = fixed;
+    if (vertex < 0 || vertex >= page.mesh->vertex_count) return;
+    page.is_fixed[vertex] = fixed;
+    memcpy(page.fixed_at + 3 * vertex, page.mesh->position + 3 * vertex, 3 * sizeof *page.fixed_at);
 }
 
 /* Equilibrium under the weight of the panels; the boundary carries, and vertices fixed by hand where there is none. */
@@ -244,7 +270,7 @@ static int32_t add_fixed(void) {
     int32_t count = page.mesh->vertex_count, *list = malloc(sizeof *list * (size_t)count), group;
     if (!list) return -1;
     for (int32_t v = 0; v < count; ++v) list[v] = v;
-    group = gproj_add_fixed(page.form, count, list, 1);
+    group = gproj_add_targets(page.form, count, list, page.fixed_at, 1);
     free(list);
     return group;
 }
@@ -299,8 +325,10 @@ static bool prepare(void) {
         if (page.weight[k] > 0 && page.group[k] < 0) page.group[k] = add_rule((rule)k);
         if (page.group[k] >= 0) gproj_set_schedule(page.form, page.group[k], schedule);
     }
-    if (page.group[FIXED] >= 0)
+    if (page.group[FIXED] >= 0) {
+        gproj_set_targets(page.form, page.group[FIXED], page.fixed_at);
         gproj_set_element_weights(page.form, page.group[FIXED], page.mesh->vertex_count, NULL, page.is_fixed);
+    }
     if (gproj_form_error(page.form)->code != GPROJ_OK) return refuse(gproj_form_error(page.form)->message);
     return true;
 }
@@ -308,8 +336,9 @@ static bool prepare(void) {
 /* -- solves and drags, in frames -- */
 
 /* Begins a solve; page_step goes on with it. False: the sentence says why. */
-bool EXPORT(page_solve) page_solve(int32_t iterations, bool nearest) {
-    gproj_solve_options options = {.smooth = !nearest, .nearest = nearest};
+bool EXPORT(page_solve) page_solve(int32_t iterations) {
+    gproj_solve_options options = {.smooth = true};
+    memset(&page.result, 0, sizeof page.result);
     if (!prepare()) return false;
     if (gproj_step_begin(page.form, iterations, &options)) return true;
     page.result = gproj_step(page.form, 0);

@@ -37,7 +37,7 @@ const CONVERGED = 0, FAILED = 5;
 const weights = new Array(rules.length).fill(0);
 let drawing = null, worker = null, item = gallery[0].name, activity = 'starting';
 let opened = {name: '', text: ''}; // the mesh as it was opened
-let mesh = null, marks = null, selected = -1, drag = null, named = null, saving = null;
+let mesh = null, marks = null, pins = [], selected = -1, drag = null, named = null, saving = null;
 let dirty = true, unseen = false; // a picture is to be drawn; the mesh has not been seen yet
 
 const send = (message, transfer = []) => worker.postMessage(message, transfer);
@@ -59,7 +59,8 @@ function showState(state) {
     $('stop').disabled = activity === 'none';
     $('undo').disabled = !state.undo;
     $('redo').disabled = !state.redo;
-    if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
+    if (busy && !state.iterations) say('Setting up.', 'busy');
+    else if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
     if (activity === 'drag') {
         const held = state.behind > mesh.edge / 2 ? ' The vertex stays behind: what must hold lets it go no farther.' : '';
         say(`Dragging: what must hold is off by ${state.residual.toExponential(1)} mean edges.${held}`, 'busy');
@@ -114,6 +115,7 @@ const answers = {
         mesh = message;
         memorySize = message.memory;
         selected = -1;
+        weights[index.fixed] = 0;
         drawing.setMesh(mesh);
         unseen = true;
         $('counts').textContent = `${opened.name}: ${mesh.vertices} vertices, ${mesh.faces} panels, ${mesh.edges} edges`;
@@ -122,6 +124,7 @@ const answers = {
     },
     marks(message) {
         marks = message.marks;
+        pins = message.pins;
         showPoints();
     },
     frame(state) {
@@ -244,7 +247,7 @@ function setColour(which) {
 
 /* -- actions -- */
 
-function solve() { send({does: 'solve', iterations: 200, nearest: false}); }
+function solve() { send({does: 'solve', iterations: 200}); }
 function stop() { drag = null; send({does: 'stop'}); }
 
 function toggleFixed() {
@@ -343,7 +346,7 @@ function listenToPointers(canvas) {
             if (drag) release();
             return;
         }
-        const vertex = mesh ? drawing.pick(x, y, event.pointerType === 'touch' ? 26 : 14) : -1;
+        const vertex = drawing.pick(x, y, event.pointerType === 'touch');
         select(vertex);
         if (vertex < 0) return;
         const place = drawing.place(vertex), w = drawing.project(place)[2];
@@ -352,7 +355,7 @@ function listenToPointers(canvas) {
     canvas.addEventListener('pointermove', event => {
         const [x, y] = at(event), before = pointers.get(event.pointerId);
         if (!before) {
-            canvas.classList.toggle('handle', mesh !== null && drawing.pick(x, y, 14) >= 0);
+            canvas.classList.toggle('handle', drawing.pick(x, y, false) >= 0);
             return;
         }
         const dx = x - before.x, dy = y - before.y;
@@ -442,7 +445,8 @@ function listenToKeys() {
 
 /* -- the same elsewhere: a program and a command that open the mesh as it was opened here and solve it so -- */
 
-const fixedList = () => marks ? [...marks.keys()].filter(v => marks[v] & 2) : [];
+const fixedList = () => pins.filter(pin => !pin[4]).map(pin => pin[0]);
+const movedList = () => pins.filter(pin => pin[4]); // fixed, but elsewhere than in the file
 const isOn = key => weights[index[key]] > 0;
 
 function asCommand() {
@@ -451,11 +455,12 @@ function asCommand() {
         if (weights[k] && r.command) parts.push(r.most ? `${r.command}${r.key === 'equalAreas' ? '=' : ' '}${weights[k]}` : r.command);
     });
     if (fixedList().length) parts.push(`--fix ${fixedList().join(',')}`);
+    for (const [vertex, x, y, z] of movedList()) parts.push(`--move ${vertex},${x},${y},${z}`);
     return parts.join(' ') + '\n';
 }
 
 function asProgram() {
-    const fixed = fixedList(), lines = [];
+    const fixed = fixedList(), moved = movedList(), lines = [];
     const out = (...more) => lines.push(...more);
     out('/* Build and run: cc -O2 -I. solve.c -lm -o solve && ./solve */', '#define GUIDEDPROJ_IMPLEMENTATION',
         '#include "guidedproj.h"', '#include <stdio.h>', '#include <stdlib.h>', '', 'int main(void) {',
@@ -470,12 +475,17 @@ function asProgram() {
             '    gproj_supports supports = {count, boundary, NULL};');
     }
     if (fixed.length) out(`    static const int32_t fixed[] = {${fixed.join(', ')}};`);
+    if (moved.length) {
+        out(`    static const int32_t moved[] = {${moved.map(pin => pin[0]).join(', ')}};`,
+            `    static const double places[] = {${moved.map(pin => pin.slice(1, 4).join(', ')).join(', ')}};`);
+    }
     rules.forEach((r, k) => {
         if (!weights[k] || !r.c) return;
         if (!r.most) out(`    ${r.c};`);
         else out(`    gproj_set_schedule(form, ${r.c}(form, ${weights[k]}), (gproj_schedule){${weights[k]}, 1, ${isOn('equilibrium') ? 9 : 6}});`);
     });
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
+    if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
     out('    gproj_result result = gproj_solve(form, 200, &options);', '    puts(result.message);',
         '    if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "solved.obj", &error);',
         '    gproj_form_destroy(form);', '    gproj_mesh_destroy(mesh);');
@@ -489,6 +499,13 @@ function show(title, note, text) {
     $('dialog-note').textContent = note;
     $('code').textContent = text;
     $('dialog').showModal();
+}
+
+/* Copies the text, or, where the browser does not let it, selects it. */
+function copy() {
+    const told = words => { $('copy').textContent = words; setTimeout(() => { $('copy').textContent = 'Copy'; }, 1500); };
+    getSelection().selectAllChildren($('code'));
+    (navigator.clipboard?.writeText($('code').textContent) ?? Promise.reject()).then(() => told('Copied'), () => told('Selected'));
 }
 
 /* -- beginning -- */
@@ -535,7 +552,7 @@ function makeControls() {
     for (const input of document.querySelectorAll('input[name=colour]')) input.onchange = () => setColour(input.value);
     $('as-c').onclick = () => show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
     $('as-command').onclick = () => show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
-    $('copy').onclick = () => navigator.clipboard?.writeText($('code').textContent);
+    $('copy').onclick = copy;
     $('save-opened').onclick = () => download(opened.name, opened.text);
     $('close').onclick = () => $('dialog').close();
 }

@@ -73,7 +73,10 @@ function postMesh(name) {
 }
 
 function postMarks() {
-    if (wasm.page_marks()) postMessage({is: 'marks', marks: bytes(wasm.page_block(0), wasm.page_vertices()).slice()});
+    if (!wasm.page_marks()) return;
+    const marks = bytes(wasm.page_block(0), wasm.page_vertices()).slice(), count = wasm.page_pins();
+    const pins = Array.from({length: count}, (_, k) => Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0) + 40 * k, 5)));
+    postMessage({is: 'marks', marks, pins});
 }
 
 /* -- undo -- */
@@ -162,15 +165,16 @@ const does = {
         wasm.page_fix(vertex, on);
         postMarks();
     },
-    solve({iterations, nearest}) {
+    solve({iterations}) {
         finish();
         remember();
-        if (!wasm.page_solve(iterations, nearest)) {
+        if (!wasm.page_solve(iterations)) {
             undo.pop();
             postMessage({is: 'error', sentence: sentence()});
             return postFrame();
         }
         activity = 'solve';
+        postFrame(); // the first turn may take long: it analyses
         arm();
     },
     grab({vertex, reach}) {
