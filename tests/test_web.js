@@ -307,7 +307,14 @@ const tests = {
                 await run(() => { select(157); document.getElementById('fix').click(); });
                 await until(() => pins.length === 1, 'a fixed vertex');
             }
-            const [program, command] = await run(() => [asProgram(), asCommand()]), verdict = await solve();
+            const shown = async button => {
+                await click(button);
+                if (button === '#as-c') await shoot('as_c');
+                const text = await run(() => document.getElementById('code').textContent);
+                await click('#close');
+                return text;
+            };
+            const program = await shown('#as-c'), command = await shown('#as-command'), verdict = await solve();
             const here = parse(await saved());
             check(/hold/.test(verdict), `${hash}: ${verdict}`);
             fs.writeFileSync(path.join(folder, 'solve.c'), program);

@@ -24,10 +24,10 @@ const rules = [
         excludes: ['fixedBoundary', 'gliding']},
     {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary', c: 'gproj_add_gliding_boundary(form, 1)',
         excludes: ['fixedBoundary', 'fixedCorners']},
-    {key: 'lifting', label: 'Vertices move up and down only', command: '--lifting', c: 'gproj_add_lifting(form, 1)'},
+    {key: 'lifting', label: 'Vertices move in height only', command: '--lifting', c: 'gproj_add_lifting(form, 1)'},
     {key: 'fixed'},
     {key: 'fairness', label: 'Fair lines', most: 0.5, command: '--fairness', c: 'gproj_add_fairness'},
-    {key: 'closeness', label: 'Close to the start', most: 0.5, command: '--closeness', c: 'gproj_add_closeness'},
+    {key: 'closeness', label: 'Near the start', most: 0.5, command: '--closeness', c: 'gproj_add_closeness'},
     {key: 'tangential', label: 'Even panels', most: 0.5, command: '--tangential', c: 'gproj_add_tangential_fairness'},
     {key: 'equalAreas', label: 'Equal areas', most: 0.5, command: '--equal-areas', c: 'gproj_add_equal_areas'},
 ];
@@ -468,8 +468,8 @@ function asProgram() {
         '    if (!mesh) return puts(error.message), 1;', '    gproj_form *form = gproj_form_create(mesh, NULL);',
         '    gproj_solve_options options = {.smooth = true};');
     if (isOn('equilibrium')) {
-        out('    gproj_loads loads = {.area_load = 1}; /* panels weigh 1 per area; the boundary carries */',
-            '    int32_t *boundary = malloc(sizeof *boundary * (size_t)mesh->vertex_count), count = 0;',
+        out('    /* Panels weigh 1 per area; the boundary carries. */', '    gproj_loads loads = {.area_load = 1};',
+            '    int32_t *boundary = malloc(sizeof *boundary * (size_t)mesh->vertex_count);', '    int32_t count = 0;',
             '    for (int32_t v = 0; v < mesh->vertex_count; ++v)',
             '        if (gproj_mesh_is_boundary_vertex(mesh, v)) boundary[count++] = v;',
             '    gproj_supports supports = {count, boundary, NULL};');
@@ -482,7 +482,8 @@ function asProgram() {
     rules.forEach((r, k) => {
         if (!weights[k] || !r.c) return;
         if (!r.most) out(`    ${r.c};`);
-        else out(`    gproj_set_schedule(form, ${r.c}(form, ${weights[k]}), (gproj_schedule){${weights[k]}, 1, ${isOn('equilibrium') ? 9 : 6}});`);
+        else out(`    gproj_set_schedule(form, ${r.c}(form, 1),`,
+            `                       (gproj_schedule){${weights[k]}, 1, ${isOn('equilibrium') ? 9 : 6}});`);
     });
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
