@@ -322,6 +322,7 @@ const tests = {
             check(built.status === 0 && !built.stderr, `${hash}: as C:`, built.stderr);
             const ran = spawnSync('./solve', {cwd: folder, encoding: 'utf8'});
             check(ran.status === 0, `${hash}: the program ends with`, ran.status, ran.stdout);
+            check(/\d+ iterations/.exec(ran.stdout)[0] === /\d+ iterations/.exec(verdict)[0], `${hash}: here ${verdict}, as C ${ran.stdout}`);
             check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= 1e-9 * meanEdge(here), `${hash}: as C another mesh comes out`);
             fs.rmSync(path.join(folder, 'solved.obj'));
             const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});

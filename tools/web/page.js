@@ -145,9 +145,7 @@ const answers = {
         say(capital(message.sentence), good ? 'good' : 'bad', message.named);
         document.body.dataset.verdict = message.sentence;
     },
-    stopped({drag: back}) {
-        say(back ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.', '');
-    },
+    told(message) { say(message.sentence, ''); },
     error(message) {
         if (pending) pending = null;
         say(capital(message.sentence), 'bad');
@@ -449,8 +447,12 @@ const fixedList = () => pins.filter(pin => !pin[4]).map(pin => pin[0]);
 const movedList = () => pins.filter(pin => pin[4]); // fixed, but elsewhere than in the file
 const isOn = key => weights[index[key]] > 0;
 
+/* A file's name as a word of the shell, and as a string in C. */
+const shellWord = name => /^[\w.+-]+$/.test(name) && name[0] !== '-' ? name : `'./${name.replace(/'/g, "'\\''")}'`;
+const cString = name => `"${name.replace(/["\\?]/g, '\\$&')}"`;
+
 function asCommand() {
-    const parts = ['tools/guidedproj', opened.name, '-o solved.obj'];
+    const parts = ['tools/guidedproj', shellWord(opened.name), '-o solved.obj'];
     rules.forEach((r, k) => {
         if (weights[k] && r.command) parts.push(r.most ? `${r.command}${r.key === 'equalAreas' ? '=' : ' '}${weights[k]}` : r.command);
     });
@@ -464,7 +466,7 @@ function asProgram() {
     const out = (...more) => lines.push(...more);
     out('/* Build and run: cc -O2 -I. solve.c -lm -o solve && ./solve */', '#define GUIDEDPROJ_IMPLEMENTATION',
         '#include "guidedproj.h"', '#include <stdio.h>', '#include <stdlib.h>', '', 'int main(void) {',
-        '    gproj_error error;', `    gproj_mesh *mesh = gproj_mesh_load("${opened.name}", NULL, &error);`,
+        '    gproj_error error;', `    gproj_mesh *mesh = gproj_mesh_load(${cString(opened.name)}, NULL, &error);`,
         '    if (!mesh) return puts(error.message), 1;', '    gproj_form *form = gproj_form_create(mesh, NULL);',
         '    gproj_solve_options options = {.smooth = true};');
     if (isOn('equilibrium')) {

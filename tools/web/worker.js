@@ -5,7 +5,7 @@
 
 const FRAME_SECONDS = 0.012, UNDO_BYTES = 1 << 28;
 let module = null, wasm = null;
-let opened = null;               // {text, settings, snapshot}: what a new instance goes on from
+let opened = null;               // {text, settings, snapshot, fixed}: what a new instance goes on from
 let activity = 'none';           // 'none', 'drag', 'release' or 'solve'
 let target = null, armed = false; // of a drag; is a turn of work under way?
 let frameSize = 0, spare = [];   // of a frame in bytes; frame buffers that are at home
@@ -37,21 +37,24 @@ function give(data) {
 /* -- what the page sees -- */
 
 function postFrame() {
-    const buffer = spare.pop();
     const state = {
         is: 'frame', activity, undo: undo.length, redo: redo.length, outcome: wasm.page_outcome(),
-        iterations: wasm.page_iterations(), residual: wasm.page_residual(), spoiled: wasm.page_spoiled(), buffer: null,
-        behind: activity === 'drag' ? wasm.page_behind() : 0,
+        iterations: wasm.page_iterations(), residual: wasm.page_residual(), spoiled: wasm.page_spoiled(),
+        behind: activity === 'drag' ? wasm.page_behind() : 0, buffer: null,
     };
-    if (buffer && wasm.page_frame()) {
-        const at = wasm.page_block(0);
-        new Uint8Array(buffer).set(bytes(at, buffer.byteLength));
-        state.buffer = buffer;
+    if (spare.length > 0 && wasm.page_frame()) {
+        state.buffer = spare.pop();
+        new Uint8Array(state.buffer).set(bytes(wasm.page_block(0), frameSize));
     } else if (activity === 'none') {
-        setTimeout(postFrame, 5); // the last frame must arrive
+        setTimeout(() => guarded(postFrame), 5); // the last frame must arrive
         return;
     }
-    postMessage(state, buffer ? [buffer] : []);
+    postMessage(state, state.buffer ? [state.buffer] : []);
+}
+
+function setFrames(size) {
+    frameSize = size;
+    spare = [new ArrayBuffer(size), new ArrayBuffer(size)];
 }
 
 function postVerdict() {
@@ -64,9 +67,7 @@ function postMesh(name) {
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
     const corners = new Uint32Array(wasm.memory.buffer.slice(at, at + 24 * triangles));
     const ends = new Uint32Array(wasm.memory.buffer.slice(at + 24 * triangles, at + 24 * triangles + 8 * edges));
-    const size = 4 * (4 * vertices + faces + edges);
-    frameSize = size;
-    spare = [new ArrayBuffer(size), new ArrayBuffer(size)];
+    setFrames(4 * (4 * vertices + faces + edges));
     postMessage({is: 'mesh', name, vertices, faces, edges, corners, ends, edge: wasm.page_reach(1),
         memory: wasm.memory.buffer.byteLength});
     postMarks();
@@ -98,7 +99,9 @@ function exchange(from, to) {
     if (from.length === 0) return;
     to.push(snapshot());
     restore(from.pop());
+    opened.snapshot = snapshot();
     postFrame();
+    postMessage({is: 'told', sentence: from === undo ? 'Undone.' : 'Done again.'});
 }
 
 /* -- work in turns -- */
@@ -151,7 +154,7 @@ const does = {
         if (!wasm.page_open(bytes.byteLength))
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
-        opened = {text: bytes, settings: opened?.settings ?? []};
+        opened = {text: bytes, settings: opened?.settings ?? [], fixed: new Set()};
         if (settings) does.set({settings});
         opened.snapshot = snapshot();
         postMesh(name);
@@ -163,6 +166,8 @@ const does = {
     },
     fix({vertex, on}) {
         wasm.page_fix(vertex, on);
+        if (on) opened.fixed.add(vertex);
+        else opened.fixed.delete(vertex);
         postMarks();
     },
     solve({iterations}) {
@@ -206,7 +211,7 @@ const does = {
         if (drag) undo.pop();
         settle();
         postFrame();
-        postMessage({is: 'stopped', drag});
+        postMessage({is: 'told', sentence: drag ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.'});
     },
     undo() { exchange(undo, redo); },
     redo() { exchange(redo, undo); },
@@ -228,6 +233,9 @@ function recover(error) {
     does.set({settings: opened.settings});
     if (!give(new Uint8Array(opened.text)) || !wasm.page_open(opened.text.byteLength)) return;
     restore(opened.snapshot);
+    for (const vertex of opened.fixed) wasm.page_fix(vertex, true);
+    setFrames(frameSize);
+    postMarks();
     postFrame();
 }
 function guarded(work) {
