@@ -1535,8 +1535,9 @@ typedef struct gproj_handles {
 
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
-       anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
-       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0: never. */
+       anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
+       more than a mean edge length for it. For long drags. A move then costs an evaluation of all rows, and now and then
+       as much as gproj_drag_begin. 0: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -23258,6 +23259,7 @@ static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of t
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
+    GPROJI_DRAG_HALVINGS = 10,   /* of a step that is to take the residual off */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
     GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
     GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
@@ -23450,19 +23452,39 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     }
 }
 
+/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x. Where
+   rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
+GPROJI_INTERNAL void gproji_shorten_restoration(gproj_drag *drag, double residual) {
+    gproj_system *s = drag->form->system;
+    double *x = s->x;
+    int32_t vertices = drag->form->mesh->vertex_count, halving, i;
+    for (halving = 0; halving <= GPROJI_DRAG_HALVINGS; ++halving) {
+        double restored, most = 0;
+        for (i = 0; i < vertices; ++i)
+            most = gproji_fmax(most, gproji_distance3(drag->base + 3 * (size_t)i, x + 3 * (size_t)i));
+        s->x = drag->base;
+        restored = gproji_see_constraints(drag);
+        s->x = x;
+        if (restored < residual && most <= 1) return;
+        for (i = 0; i < drag->variables; ++i)
+            drag->base[i] = halving < GPROJI_DRAG_HALVINGS ? (drag->base[i] + x[i]) / 2 : x[i];
+    }
+}
+
 /* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
    False: that could not be done, and earlier responses are lost. */
 GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
     gproj_system *s = drag->form->system;
     int32_t batch = s->cholesky->batch;
+    double residual = gproji_see_constraints(drag);
     bool found;
-    gproji_see_constraints(drag);
     if (s->error.code != GPROJ_OK) return false;
     memcpy(drag->base, s->x, (size_t)drag->variables * sizeof *drag->base);
     s->cholesky->batch = gproji_max(batch, GPROJI_DRAG_SIDES);
     found = gproji_find_responses(drag, restore);
     s->cholesky->batch = batch;
     if (!found) return false;
+    if (restore) gproji_shorten_restoration(drag, residual);
     gproji_orthonormalise(drag);
     gproji_invert_lift(drag);
     gproji_gather_handles(drag, drag->base, drag->held);

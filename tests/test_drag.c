@@ -406,6 +406,67 @@ GPROJT_TEST(a_long_drag) {
     gprojt_clear_stage(&stage);
 }
 
+/* A twisted tower of quads with a waist. */
+static gproj_mesh *gprojt_tower(int32_t rows, int32_t around) {
+    gprojt_soup s;
+    int32_t i, j;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i <= rows; ++i)
+        for (j = 0; j < around; ++j) {
+            double h = (double)i / rows, t = (double)j / around, pi = 3.14159265358979, turn = 2 * pi * (t + 0.12 * h);
+            double r = 1 + 0.45 * (2 * h - 1) * (2 * h - 1) + 0.12 * cos(4 * pi * t);
+            gprojt_add_vertex(&s, r * cos(turn), 0.8 * r * sin(turn), 3.2 * h);
+        }
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < around; ++j) {
+            int32_t a = i * around + j, b = i * around + (j + 1) % around;
+            gprojt_add_quad(&s, a, a + around, b + around, b);
+        }
+    return gprojt_mesh_of(s);
+}
+
+/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other. */
+GPROJT_TEST(restorations_stay_near) {
+    gproj_mesh *mesh = gprojt_tower(16, 24);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options solve;
+    gproj_drag_options options;
+    gproj_handles handles;
+    gproj_drag *drag;
+    int32_t middle = 8 * 24 + 6, *list = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof *list), v, k;
+    double *weight = (double *)malloc((size_t)mesh->vertex_count * sizeof *weight), *start, edge, p[3], residual = 0;
+    int64_t ends[2] = {0, 0};
+    memset(&options, 0, sizeof options);
+    memset(&handles, 0, sizeof handles);
+    options.residual_bound = 0.02;
+    handles.count = 1, handles.start = ends, handles.vertex = list, handles.weight = weight;
+    memset(&solve, 0, sizeof solve);
+    solve.smooth = true;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_add_fairness(form, 0.2);
+    GPROJT_CHECK(gproj_solve(form, 60, &solve).outcome == GPROJ_CONVERGED);
+    start = gprojt_keep(mesh);
+    edge = gproj_mesh_mean_edge_length(mesh);
+    handles.position = start + 3 * middle;
+    ends[1] = gproj_find_reach(form, middle, 5 * edge, list, weight);
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    for (k = 1; k <= 10; ++k) {
+        memcpy(p, start + 3 * middle, sizeof p);
+        p[0] += 0.25 * k * edge;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK);
+        residual = fmax(residual, gproj_drag_residual(drag));
+        for (v = 0; v < mesh->vertex_count; ++v)
+            GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, start + 3 * v) < 5 * edge);
+    }
+    GPROJT_CHECK(residual < 0.2);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(list), free(weight), free(start);
+}
+
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
 GPROJT_TEST(a_wild_move) {
     static const double far[] = {1e5, 1e20, 1e69};
@@ -882,6 +943,7 @@ int main(void) {
     GPROJT_RUN(a_closed_loop);
     GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
+    GPROJT_RUN(restorations_stay_near);
     GPROJT_RUN(a_wild_move);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);

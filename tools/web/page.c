@@ -44,12 +44,17 @@ static struct {
     double *is_fixed;     /* a weight for each vertex: 0 or 1 */
     double *fixed_at;     /* 3 for each vertex */
     double centre[3], radius;
-    double residual, target[3]; /* of the last move of a drag */
+    double residual, handle[3]; /* of a drag: after the last move, and where its handle has been led */
+    bool held;                  /* the handle goes no farther */
+    double *before;             /* positions before a move */
     gproj_result result;
     char sentence[GPROJ_MESSAGE_SIZE];
     void *block;
     size_t block_size;
 } page;
+
+/* A handle is held where another vertex would move so much farther than it. */
+static const double HELD = 8;
 
 static double now(void *user) { return (void)user, page_now(); }
 static const gproj_host host = {.clock = {now, NULL}};
@@ -75,14 +80,15 @@ const char *EXPORT(page_sentence) page_sentence(void) { return page.sentence; }
 /* -- meshes -- */
 
 /* Takes the place of the mesh before. */
-static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *is_fixed) {
+static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *before, double *is_fixed) {
     size_t bytes = 3 * sizeof *original * (size_t)mesh->vertex_count;
     double low[3], high[3];
     gproj_drag_cancel(page.drag);
     gproj_form_destroy(page.form);
     gproj_mesh_destroy(page.mesh);
-    free(page.original), free(page.is_fixed), free(page.fixed_at);
-    page.mesh = mesh, page.original = original, page.is_fixed = is_fixed, page.fixed_at = fixed_at;
+    free(page.original), free(page.is_fixed), free(page.fixed_at), free(page.before);
+    page.mesh = mesh, page.original = original, page.is_fixed = is_fixed, page.fixed_at = fixed_at,
+    page.before = before;
     page.form = NULL, page.drag = NULL;
     page.weight[FIXED] = 0;
     memset(&page.result, 0, sizeof page.result);
@@ -104,18 +110,19 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
 bool EXPORT(page_open) page_open(size_t size) {
     gproj_error error;
     gproj_mesh *mesh = gproj_mesh_read(page.block, size, GPROJ_FORMAT_DETECT, &host, &error);
-    double *original, *fixed_at, *is_fixed;
+    double *original, *fixed_at, *before, *is_fixed;
     if (!mesh) return refuse(error.message);
     original = malloc(3 * sizeof *original * (size_t)mesh->vertex_count);
     fixed_at = malloc(3 * sizeof *fixed_at * (size_t)mesh->vertex_count);
+    before = malloc(3 * sizeof *before * (size_t)mesh->vertex_count);
     is_fixed = calloc((size_t)mesh->vertex_count, sizeof *is_fixed);
-    if (!original || !fixed_at || !is_fixed || mesh->face_count == 0) {
-        bool enough = original && fixed_at && is_fixed;
-        free(original), free(fixed_at), free(is_fixed);
+    if (!original || !fixed_at || !before || !is_fixed || mesh->face_count == 0) {
+        bool enough = original && fixed_at && before && is_fixed;
+        free(original), free(fixed_at), free(before), free(is_fixed);
         gproj_mesh_destroy(mesh);
         return refuse(enough ? "the file has no faces" : gproj_code_string(GPROJ_ERROR_MEMORY));
     }
-    adopt(mesh, original, fixed_at, is_fixed);
+    adopt(mesh, original, fixed_at, before, is_fixed);
     return true;
 }
 
@@ -372,7 +379,7 @@ bool EXPORT(page_step) page_step(double seconds) {
 /* Grabs a vertex with those within `reach`, relative. False: the sentence says why. */
 bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
     size_t vertices = (size_t)page.mesh->vertex_count;
-    gproj_drag_options options = {.residual_bound = 0.02};
+    gproj_drag_options options = {.residual_bound = 0.01};
     gproj_error error;
     int64_t start[2] = {0, 0};
     int32_t *list = malloc(sizeof *list * vertices);
@@ -383,39 +390,81 @@ bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
         start[1] = gproj_find_reach(page.form, vertex, reach * page.radius, list, weight);
         page.drag = gproj_drag_begin(page.form, &handles, &options, &error);
         if (!page.drag) refuse(error.message);
-        memcpy(page.target, page.mesh->position + 3 * vertex, sizeof page.target);
+        memcpy(page.handle, page.mesh->position + 3 * vertex, sizeof page.handle);
+        page.held = false;
     }
     free(list), free(weight);
     return page.drag != NULL;
 }
 
-/* Moves the grabbed vertex to a place, relative: in short pieces, because the error grows with the square of a move, and
-   again to the same place while the error is large. Takes no more pieces after a while. False: the sentence says why; the
-   drag goes on. */
-bool EXPORT(page_move) page_move(double x, double y, double z) {
-    const double relative[3] = {x, y, z};
-    double from[3], to[3], at[3], way = 0, begun = page_now();
-    int pieces, k;
-    if (!page.drag) return false;
-    for (k = 0; k < 3; ++k) {
-        from[k] = page.target[k];
-        to[k] = page.target[k] = relative[k] * page.radius + page.centre[k];
-        way += (to[k] - from[k]) * (to[k] - from[k]);
+/* Leads the handle on by `way` along the unit vector `along`. Returns how far the vertex that moved most has moved; < 0: the
+   sentence says why that was refused. */
+static double lead(const double along[3], double way) {
+    const gproj_mesh *mesh = page.mesh;
+    double to[3], most = 0;
+    memcpy(page.before, mesh->position, 3 * sizeof *page.before * (size_t)mesh->vertex_count);
+    for (int k = 0; k < 3; ++k) to[k] = page.handle[k] + way * along[k];
+    if (gproj_drag_move(page.drag, to) != GPROJ_OK) {
+        refuse(gproj_drag_error(page.drag)->message);
+        return -1;
     }
-    pieces = (int)ceil(fmin(8, sqrt(way) / (0.25 * gproj_mesh_mean_edge_length(page.mesh))));
-    page.residual = 0;
-    for (int piece = 1; piece <= pieces || (page.residual > 0.02 && piece < pieces + 6); ++piece) {
-        bool late = page_now() - begun > 0.1;
-        for (k = 0; k < 3; ++k) at[k] = piece < pieces && !late ? from[k] + (to[k] - from[k]) * piece / pieces : to[k];
-        if (gproj_drag_move(page.drag, at) != GPROJ_OK) return refuse(gproj_drag_error(page.drag)->message);
-        page.residual = gproj_drag_residual(page.drag);
-        if (late) break;
+    memcpy(page.handle, to, sizeof to);
+    for (int32_t v = 0; v < mesh->vertex_count; ++v) {
+        double d[3];
+        for (int k = 0; k < 3; ++k) d[k] = mesh->position[3 * v + k] - page.before[3 * v + k];
+        most = fmax(most, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
     }
-    return true;
+    return most;
 }
 
-/* The distance, relative, by which the grabbed vertex stays behind its target. */
-double EXPORT(page_behind) page_behind(void) { return gproj_drag_get_info(page.drag).behind / page.radius; }
+/* What page_move says. */
+enum {
+    REFUSED,
+    THERE,
+    ON_THE_WAY
+};
+
+/* Moves the grabbed vertex towards a place, relative, for about a tenth of a second. The error grows with the square of what
+   vertices move, so none moves by more than a quarter of an edge at once. A short probe tells how far the others would: where
+   the handle hardly yields they would fly, and it is held. */
+int32_t EXPORT(page_move) page_move(double x, double y, double z) {
+    const double relative[3] = {x, y, z}, edge = gproj_mesh_mean_edge_length(page.mesh), begun = page_now();
+    int again = 0;
+    if (!page.drag) return REFUSED;
+    page.held = false;
+    while (page_now() - begun < 0.1) {
+        int32_t linearised = gproj_drag_get_info(page.drag).linearisations;
+        double along[3], way = 0, probe, most;
+        for (int k = 0; k < 3; ++k) along[k] = relative[k] * page.radius + page.centre[k] - page.handle[k];
+        for (int k = 0; k < 3; ++k) way += along[k] * along[k];
+        way = sqrt(way);
+        if (way <= 1e-9 * edge) { /* a move to where it is takes the error off */
+            if (page.residual <= 0.03 || ++again > 5) return THERE;
+            if (lead(along, 0) < 0) return REFUSED;
+            page.residual = gproj_drag_residual(page.drag);
+            continue;
+        }
+        for (int k = 0; k < 3; ++k) along[k] /= way;
+        probe = fmin(way, 1e-3 * edge);
+        most = lead(along, probe);
+        if (most < 0) return REFUSED;
+        if (gproj_drag_get_info(page.drag).linearisations == linearised) {
+            page.held = most > HELD * probe;
+            if (page.held && lead(along, -probe) < 0) return REFUSED;
+            if (!page.held && way > probe &&
+                lead(along, fmin(way - probe, 0.25 * edge * probe / fmax(most, 1e-6 * probe))) < 0)
+                return REFUSED;
+        }
+        page.residual = gproj_drag_residual(page.drag);
+        if (page.held) return THERE;
+    }
+    return ON_THE_WAY;
+}
+
+/* Does the grabbed vertex stay behind? */
+bool EXPORT(page_held) page_held(void) {
+    return page.held || gproj_drag_get_info(page.drag).behind > gproj_mesh_mean_edge_length(page.mesh) / 2;
+}
 
 /* Lets go: page_step goes on with the release. */
 bool EXPORT(page_release) page_release(void) { return gproj_drag_release(page.drag); }

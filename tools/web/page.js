@@ -62,7 +62,7 @@ function showState(state) {
     if (busy && !state.iterations) say('Setting up.', 'busy');
     else if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
     if (activity === 'drag') {
-        const held = state.behind > mesh.edge / 2 ? ' The vertex stays behind: what must hold lets it go no farther.' : '';
+        const held = state.held ? ' The vertex stays behind: what must hold lets it go no farther.' : '';
         say(`Dragging: what must hold is off by ${state.residual.toExponential(1)} mean edges.${held}`, 'busy');
     }
     document.body.dataset.residual = state.residual;

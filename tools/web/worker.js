@@ -3,6 +3,7 @@
    through; what is undone lies here as snapshots. */
 'use strict';
 
+const REFUSED = 0, ON_THE_WAY = 2; // see page_move
 const FRAME_SECONDS = 0.012, UNDO_BYTES = 1 << 28;
 let module = null, wasm = null;
 let opened = null;               // {text, settings, snapshot, fixed}: what a new instance goes on from
@@ -40,7 +41,7 @@ function postFrame() {
     const state = {
         is: 'frame', activity, undo: undo.length, redo: redo.length, outcome: wasm.page_outcome(),
         iterations: wasm.page_iterations(), residual: wasm.page_residual(), spoiled: wasm.page_spoiled(),
-        behind: activity === 'drag' ? wasm.page_behind() : 0, buffer: null,
+        held: activity === 'drag' && wasm.page_held() !== 0, buffer: null,
     };
     if (spare.length > 0 && wasm.page_frame()) {
         state.buffer = spare.pop();
@@ -130,8 +131,10 @@ function turn() {
     armed = false;
     if (activity === 'drag') {
         if (!target) return;
-        if (!wasm.page_move(...target)) postMessage({is: 'error', sentence: sentence()});
-        target = null;
+        const moved = wasm.page_move(...target);
+        if (moved === REFUSED) postMessage({is: 'error', sentence: sentence()});
+        if (moved === ON_THE_WAY) arm();
+        else target = null;
         postFrame();
     } else if (activity === 'solve' || activity === 'release') {
         const more = wasm.page_step(FRAME_SECONDS);
@@ -199,7 +202,7 @@ const does = {
     },
     release() {
         if (activity !== 'drag') return;
-        if (target) turn();
+        for (let k = 0; target && k < 20; ++k) turn();
         wasm.page_release();
         activity = 'release';
         arm();
