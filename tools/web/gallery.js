@@ -61,7 +61,7 @@ const gallery = [
         }),
     },
     {
-        name: 'Hexagons', rules: {planar: 1, closeness: 0.05},
+        name: 'Hexagons', rules: {planar: 1, closeness: 0.05, fairness: 0.1},
         hint: 'Hexagons have more freedom to be flat. Solve, then pull with a long reach.',
         make: () => honeycomb(11, 12, (x, y) => {
             const u = 2 * x - 1, v = 2 * y - 1;

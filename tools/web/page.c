@@ -379,7 +379,8 @@ bool EXPORT(page_step) page_step(double seconds) {
 /* Grabs a vertex with those within `reach`, relative. False: the sentence says why. */
 bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
     size_t vertices = (size_t)page.mesh->vertex_count;
-    gproj_drag_options options = {.residual_bound = 0.01};
+    /* Closeness keeps a loose boundary in order at the release, too. */
+    gproj_drag_options options = {.residual_bound = 0.01, .keep_wishes = page.weight[CLOSENESS] > 0};
     gproj_error error;
     int64_t start[2] = {0, 0};
     int32_t *list = malloc(sizeof *list * vertices);
