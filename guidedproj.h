@@ -1632,8 +1632,9 @@ typedef struct gproj_handles {
 
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
-       anew at the mesh as it has become, after a step that takes most of the residual off. For long drags. A move then
-       costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0 or INFINITY: never. */
+       anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
+       more than a mean edge length for it. For long drags. A move then costs an evaluation of all rows, and now and then
+       as much as gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -1676,9 +1677,30 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
    iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
+/* Begins that release in frames, for programs that draw between iterations: gproj_solve_advance goes on with it, and moves are
+   refused from now on. gproj_drag_end takes the iterations that are left and gives the verdict; the bytes are those of
+   gproj_drag_end alone. gproj_drag_cancel goes back at any time.
+
+       gproj_drag_release(drag);
+       while (gproj_solve_is_on(form)) {
+           gproj_solve_advance(form, 0.01);
+           draw(mesh);
+       }
+       result = gproj_drag_end(drag);
+
+   After gproj_solve_stop, or a gproj_solve that is refused meanwhile, gproj_drag_end leaves the mesh as it is:
+   GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
+   gproj_drag_end tells. A state saved before the end has the release's weights. */
+GPROJ_API bool gproj_drag_release(gproj_drag *drag);
 /* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
    during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
+/* Finds the vertices of a handle with reach: those nearer to `vertex` than `reach` (in the mesh's units, on the shortest
+   path of edges), itself first, in the order of their distances d, with the weights (1 - d^2 / reach^2)^2. One handle
+   with this list takes its neighbourhood along where a vertex alone makes a spike. `vertices` and `weights` have room for
+   vertex_count numbers each. Returns how many were found, 1 with a reach of 0; 0: there is no such vertex, or the form
+   has an error. Work: a pass over all vertices, and for each one found a pass over the border of those found. */
+GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-state   A form's state as a block of bytes: undo and redo, and going on later or on another machine.
@@ -12436,11 +12458,13 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x, where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
+/* Linearises at x (NULL: the own one), where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
    Returns the residual. */
-GPROJI_INTERNAL double gproji_see_hard(gproj_system *s) {
+GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
+    double *own = s->x;
     gproji_loop loop;
     int32_t i, r;
+    if (x) s->x = x;
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     for (i = 0; i < s->group_count; ++i) {
@@ -12455,6 +12479,7 @@ GPROJI_INTERNAL double gproji_see_hard(gproj_system *s) {
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r)
             g->row[r].active = g->weight > 0 && g->row[r].weight > 0 && !(g->row[r].phi > gproji_touch);
     }
+    s->x = own;
     return loop.standing.residual;
 }
 
@@ -24052,6 +24077,7 @@ static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of t
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
+    GPROJI_DRAG_HALVINGS = 10,   /* of a step that is to take the residual off */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
     GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
     GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
@@ -24090,6 +24116,7 @@ struct gproj_drag {
     gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
     uint8_t *state;           /* of the form, saved at the beginning */
     size_t state_size;
+    bool released; /* the release has begun; the form's solve in frames is its */
     gproji_pool pool;
 };
 
@@ -24187,13 +24214,30 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     }
 }
 
+/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x. Where
+   rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
+GPROJI_INTERNAL void gproji_shorten_restoration(gproj_drag *drag, double residual) {
+    const double *x = gproj_system_values(drag->form->system);
+    int32_t vertices = drag->form->mesh->vertex_count, halving, i;
+    for (halving = 0; halving <= GPROJI_DRAG_HALVINGS; ++halving) {
+        double restored, most = 0;
+        for (i = 0; i < vertices; ++i)
+            most = gproji_fmax(most, gproji_distance3(drag->base + 3 * (size_t)i, x + 3 * (size_t)i));
+        restored = gproji_see_hard(drag->form->system, drag->base);
+        if (restored < residual && most <= 1) return;
+        for (i = 0; i < drag->variables; ++i)
+            drag->base[i] = halving < GPROJI_DRAG_HALVINGS ? (drag->base[i] + x[i]) / 2 : x[i];
+    }
+}
+
 /* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
    False: that could not be done, and earlier responses are lost. */
 GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
-    gproji_see_hard(drag->form->system);
+    double residual = gproji_see_hard(drag->form->system, NULL);
     if (!gproji_form_ready(drag->form)) return false;
     memcpy(drag->base, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->base);
     if (!gproji_find_responses(drag, restore)) return false;
+    if (restore) gproji_shorten_restoration(drag, residual);
     gproji_orthonormalise(drag);
     gproji_invert_lift(drag);
     gproji_gather_handles(drag, drag->base, drag->held);
@@ -24240,6 +24284,9 @@ GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     if (!gproji_form_ready(drag->form)) {
         gproji_pass_on(&drag->error, gproj_form_error(drag->form));
+    } else if (drag->released) {
+        gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "drag: the handles have been released; end or cancel it");
     } else if (!gproji_has_structure(drag->form->system, drag->structure)) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
@@ -24268,7 +24315,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
-    if (bound > 0 && !(gproji_see_hard(drag->form->system) <= bound)) {
+    if (bound > 0 && !(gproji_see_hard(drag->form->system, NULL) <= bound)) {
         if (!gproji_linearise_drag(drag, true)) {
             /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
             gproji_fail_linearising(drag, &drag->error);
@@ -24286,7 +24333,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
     if (!drag) return 0;
     gproji_error_clear(&drag->error);
-    return gproji_drag_is_usable(drag) ? gproji_see_hard(drag->form->system) : HUGE_VAL;
+    return gproji_drag_is_usable(drag) ? gproji_see_hard(drag->form->system, NULL) : HUGE_VAL;
 }
 
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
@@ -24495,30 +24542,15 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
-/* Releases the form: solves it from the mesh before the drag, guided to x. */
-GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
-    gproj_result result;
-    gproj_system *s;
-    gproj_form *form;
-    const gproji_group *fairness, *at;
-    const double *x;
-    int32_t soft, group, r, k, c;
+/* Gives the groups of the release their rows: fairness as before the drag, handles at x, all else where it was. */
+GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
+    const gproj_form *form = drag->form;
+    gproj_system *s = form->system;
+    int32_t soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    int32_t group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), r, k, c;
+    const gproji_group *fairness = gproji_group_at(s, soft), *at = gproji_group_at(s, group);
+    const double *x = gproj_system_values(s);
     int64_t e;
-    if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
-    form = drag->form;
-    form->drag = NULL;
-    gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (!gproji_form_ready(form)) {
-        result = gproji_failed_result(gproj_form_error(form));
-        gproji_destroy_drag(drag);
-        return result;
-    }
-    s = form->system;
-    x = gproj_system_values(s);
-    soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
     /* 1. Fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
         gproj_system_set_row(s, soft, r, NULL, 0);
@@ -24542,11 +24574,85 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
+}
+
+GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
+    gproj_form *form;
+    if (!drag || drag->released) return false;
+    form = drag->form;
+    drag->released = true;
+    gproji_reset_mesh(form);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    if (!gproji_form_ready(form)) return false;
+    gproji_set_release(drag);
     gproji_schedule_release(drag, true);
-    result = gproj_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
-    gproji_schedule_release(drag, false);
+    /* A solve is refused during a drag, but for this one. */
+    form->drag = NULL;
+    form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+    form->drag = drag;
+    return form->solve.on;
+}
+
+GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
+    gproj_result result;
+    gproj_form *form;
+    if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
+    form = drag->form;
+    gproj_drag_release(drag);
+    while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+    if (!gproji_form_ready(form)) {
+        result = gproji_failed_result(gproj_form_error(form));
+    } else {
+        result = form->solve.loop.result;
+        if (!form->solve.finished) result.outcome = GPROJ_CANCELLED;
+        form->solve.finished = false;
+        gproji_schedule_release(drag, false);
+    }
+    if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);
     return result;
+}
+
+/* -- reach -- */
+
+GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights) {
+    const gproj_mesh *mesh;
+    double *distance;
+    int32_t seen = 1, done = 0, count, k;
+    if (!gproji_form_ready(form) || vertex < 0 || vertex >= form->mesh->vertex_count || !vertices || !weights) return 0;
+    mesh = form->mesh;
+    distance = (double *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *distance);
+    if (!distance) {
+        gproji_fail_memory(&form->error);
+        return 0;
+    }
+    for (k = 0; k < mesh->vertex_count; ++k) distance[k] = HUGE_VAL;
+    distance[vertex] = 0, vertices[0] = vertex;
+    /* Dijkstra (1959). vertices[0 .. done - 1] are settled, those up to `seen` are the border, without an order: within
+       a reach that a hand can drag it is short. */
+    for (; done < seen; ++done) {
+        int32_t best = done, at, h, first;
+        for (k = done + 1; k < seen; ++k)
+            if (distance[vertices[k]] < distance[vertices[best]]) best = k;
+        at = vertices[best], vertices[best] = vertices[done], vertices[done] = at;
+        first = h = mesh->vertex_halfedge[at];
+        while (h >= 0) {
+            int32_t to = mesh->origin[mesh->twin[h]];
+            double d =
+                distance[at] + gproji_distance3(mesh->position + 3 * (size_t)at, mesh->position + 3 * (size_t)to);
+            if (d < reach && distance[to] == HUGE_VAL) vertices[seen++] = to;
+            if (d < reach && d < distance[to]) distance[to] = d;
+            h = mesh->next[mesh->twin[h]];
+            if (h == first) break;
+        }
+    }
+    for (count = 0; count < done; ++count) {
+        double t = count ? distance[vertices[count]] / reach : 0;
+        weights[count] = (1 - t * t) * (1 - t * t);
+    }
+    gproji_give(&form->own, distance, (size_t)mesh->vertex_count, sizeof *distance);
+    return count;
 }
 
 #endif /* GPROJI_IMPLEMENTED */

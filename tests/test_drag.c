@@ -406,6 +406,67 @@ GPROJT_TEST(a_long_drag) {
     gprojt_clear_stage(&stage);
 }
 
+/* A twisted tower of quads with a waist. */
+static gproj_mesh *gprojt_tower(int32_t rows, int32_t around) {
+    gprojt_soup s;
+    int32_t i, j;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i <= rows; ++i)
+        for (j = 0; j < around; ++j) {
+            double h = (double)i / rows, t = (double)j / around, pi = 3.14159265358979, turn = 2 * pi * (t + 0.12 * h);
+            double r = 1 + 0.45 * (2 * h - 1) * (2 * h - 1) + 0.12 * cos(4 * pi * t);
+            gprojt_add_vertex(&s, r * cos(turn), 0.8 * r * sin(turn), 3.2 * h);
+        }
+    for (i = 0; i < rows; ++i)
+        for (j = 0; j < around; ++j) {
+            int32_t a = i * around + j, b = i * around + (j + 1) % around;
+            gprojt_add_quad(&s, a, a + around, b + around, b);
+        }
+    return gprojt_mesh_of(s);
+}
+
+/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other. */
+GPROJT_TEST(restorations_stay_near) {
+    gproj_mesh *mesh = gprojt_tower(16, 24);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options solve;
+    gproj_drag_options options;
+    gproj_handles handles;
+    gproj_drag *drag;
+    int32_t middle = 8 * 24 + 6, *list = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof *list), v, k;
+    double *weight = (double *)malloc((size_t)mesh->vertex_count * sizeof *weight), *start, edge, p[3], residual = 0;
+    int64_t ends[2] = {0, 0};
+    memset(&options, 0, sizeof options);
+    memset(&handles, 0, sizeof handles);
+    options.residual_bound = 0.02;
+    handles.count = 1, handles.start = ends, handles.vertex = list, handles.weight = weight;
+    memset(&solve, 0, sizeof solve);
+    solve.smooth = true;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_add_fairness(form, 0.2);
+    GPROJT_CHECK(gproj_solve(form, 60, &solve).outcome == GPROJ_CONVERGED);
+    start = gprojt_keep(mesh);
+    edge = gproj_mesh_mean_edge_length(mesh);
+    handles.position = start + 3 * middle;
+    ends[1] = gproj_find_reach(form, middle, 5 * edge, list, weight);
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    for (k = 1; k <= 10; ++k) {
+        memcpy(p, start + 3 * middle, sizeof p);
+        p[0] += 0.25 * k * edge;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK);
+        residual = fmax(residual, gproj_drag_residual(drag));
+        for (v = 0; v < mesh->vertex_count; ++v)
+            GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, start + 3 * v) < 5 * edge);
+    }
+    GPROJT_CHECK(residual < 0.2);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(list), free(weight), free(start);
+}
+
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
 GPROJT_TEST(a_wild_move) {
     static const double far[] = {1e5, 1e20, 1e69};
@@ -715,14 +776,118 @@ GPROJT_TEST(wishes_at_the_release) {
     GPROJT_CHECK(far[0] > 0.95 && far[1] < 0.3);
 }
 
+/* -- releases in frames -- */
+
+/* Frames give the bytes of one gproj_drag_end, also where it takes the iterations that are left. */
+GPROJT_TEST(releases_in_frames) {
+    int design, frames;
+    for (design = 0; design < GPROJT_DESIGNS; ++design) {
+        size_t size = 0, more;
+        uint8_t *wanted = NULL, *state;
+        gproj_result result, first;
+        memset(&first, 0, sizeof first);
+        for (frames = 0; frames < 3; ++frames) {
+            gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), design, NULL);
+            int32_t v = gprojt_middle(stage.mesh), k;
+            gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+            gprojt_pull(&stage, drag, v, 0.4);
+            if (frames > 0) {
+                GPROJT_CHECK(gproj_drag_release(drag) && gproj_solve_is_on(stage.form));
+                GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start));
+                for (k = 0; gproj_solve_is_on(stage.form) && (frames == 1 || k < 2); ++k) gproj_solve_advance(stage.form, 0);
+                GPROJT_CHECK(gproj_solve_is_on(stage.form) == (frames == 2) && k > 1);
+            }
+            result = gproj_drag_end(drag);
+            state = gprojt_save(stage.form, &more);
+            if (frames == 0) {
+                wanted = state, size = more, first = result;
+            } else {
+                GPROJT_CHECK(size == more && memcmp(wanted, state, size) == 0);
+                GPROJT_CHECK(result.outcome == first.outcome && result.iterations == first.iterations);
+                GPROJT_CHECK(result.residual == first.residual && strcmp(result.message, first.message) == 0);
+                free(state);
+            }
+            gprojt_clear_stage(&stage);
+        }
+        free(wanted);
+    }
+}
+
+/* A release may be cancelled, and stopped; the wishes have their weights again afterwards. */
+GPROJT_TEST(releases_cancelled_and_stopped) {
+    int stopped;
+    for (stopped = 0; stopped < 2; ++stopped) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+        int32_t v = gprojt_middle(stage.mesh), wish = gproj_add_closeness(stage.form, 5);
+        gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+        gproj_schedule none = {0, 0, 0};
+        double p[3] = {0, 0, 0}, *now;
+        gprojt_pull(&stage, drag, v, 0.4);
+        GPROJT_CHECK(gproj_drag_release(drag) && !gproj_drag_release(drag));
+        GPROJT_CHECK(gproj_form_group_info(stage.form, wish).schedule.weight == 0);
+        gproj_solve_advance(stage.form, 0);
+        gproj_solve_advance(stage.form, 0);
+        GPROJT_CHECK(!gprojt_unmoved(stage.mesh, stage.start));
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_STATE);
+        GPROJT_CHECK(strstr(gproj_drag_error(drag)->message, "have been released"));
+        now = gprojt_keep(stage.mesh);
+        if (stopped) gproj_solve_stop(stage.form);
+        if (stopped) GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CANCELLED);
+        if (!stopped) gproj_drag_cancel(drag);
+        GPROJT_CHECK(!gproj_solve_is_on(stage.form) && gprojt_unmoved(stage.mesh, stopped ? now : stage.start));
+        GPROJT_CHECK(gproj_form_group_info(stage.form, wish).schedule.weight == 5);
+        gproj_set_schedule(stage.form, wish, none);
+        GPROJT_CHECK(gproj_solve(stage.form, 40, NULL).outcome == GPROJ_CONVERGED);
+        free(now);
+        gprojt_clear_stage(&stage);
+    }
+    GPROJT_CHECK(!gproj_drag_release(NULL));
+}
+
+/* -- reach -- */
+
+/* On a plane grid with edges of length 1 the distance is |di| + |dj|. */
+GPROJT_TEST(handles_with_reach) {
+    enum {
+        SIDE = 9,
+        COUNT = SIDE * SIDE
+    };
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(SIDE - 1, SIDE - 1));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t list[COUNT], count, k, middle = COUNT / 2, near = 0, v;
+    double weight[COUNT], before = 0;
+    for (v = 0; v < COUNT; ++v)
+        mesh->position[3 * v] = v / SIDE, mesh->position[3 * v + 1] = v % SIDE, mesh->position[3 * v + 2] = 0;
+    count = gproj_find_reach(form, middle, 3, list, weight);
+    GPROJT_CHECK(list[0] == middle && weight[0] == 1);
+    for (k = 0; k < count; ++k) {
+        double d = abs(list[k] / SIDE - middle / SIDE) + abs(list[k] % SIDE - middle % SIDE), t = d / 3;
+        GPROJT_CHECK(d < 3 && d >= before && fabs(weight[k] - (1 - t * t) * (1 - t * t)) < 1e-12);
+        before = d;
+    }
+    for (v = 0; v < COUNT; ++v) near += abs(v / SIDE - middle / SIDE) + abs(v % SIDE - middle % SIDE) < 3;
+    GPROJT_CHECK(count == near && count == 13);
+    GPROJT_CHECK(gproj_find_reach(form, 0, 2.5, list, weight) == 6); /* a corner */
+    GPROJT_CHECK(gproj_find_reach(form, 4, 1e9, list, weight) == COUNT);
+    GPROJT_CHECK(gproj_find_reach(form, middle, 0, list, weight) == 1 && list[0] == middle && weight[0] == 1);
+    GPROJT_CHECK(gproj_find_reach(form, middle, -1, list, weight) == 1);
+    GPROJT_CHECK(gproj_find_reach(form, COUNT, 3, list, weight) == 0 &&
+                 gproj_find_reach(form, -1, 3, list, weight) == 0);
+    GPROJT_CHECK(gproj_find_reach(form, middle, 3, NULL, weight) == 0);
+    GPROJT_CHECK(gproj_find_reach(NULL, middle, 3, list, weight) == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- failing allocations -- */
 
 static bool gprojt_use_drag(const gproj_host *host, void *user) {
     gproj_mesh *mesh = gprojt_roof(3, 0.02);
     gproj_form *form = gprojt_design(mesh, *(const int *)user, host);
     double *before = NULL;
-    int32_t v = gprojt_middle(mesh);
+    int32_t v = gprojt_middle(mesh), list[64];
     gproj_handles handles = gprojt_vertex_handles(1, &v);
+    double weight[64];
     gproj_error error;
     gproj_drag *drag;
     bool whole = gproj_solve(form, 20, NULL).outcome != GPROJ_FAILED;
@@ -731,6 +896,7 @@ static bool gprojt_use_drag(const gproj_host *host, void *user) {
         drag = gproj_drag_begin(form, &handles, NULL, &error);
         whole = drag != NULL;
         GPROJT_CHECK(whole || (error.code == GPROJ_ERROR_MEMORY && gprojt_unmoved(mesh, before)));
+        if (drag) whole = gproj_find_reach(form, v, 1e9, list, weight) > 0;
         if (drag) gproj_drag_move(drag, mesh->position);
         if (drag) whole = gproj_drag_end(drag).outcome != GPROJ_FAILED;
         GPROJT_CHECK(whole || gprojt_unmoved(mesh, before));
@@ -779,6 +945,7 @@ int main(void) {
     GPROJT_RUN(a_closed_loop);
     GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
+    GPROJT_RUN(restorations_stay_near);
     GPROJT_RUN(a_wild_move);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
@@ -788,6 +955,9 @@ int main(void) {
     GPROJT_RUN(misused);
     GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
+    GPROJT_RUN(releases_in_frames);
+    GPROJT_RUN(releases_cancelled_and_stopped);
+    GPROJT_RUN(handles_with_reach);
     GPROJT_RUN(failing_allocations);
     GPROJT_RUN(same_bits_for_all_workers);
     return gprojt_report();
