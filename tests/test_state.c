@@ -1,5 +1,6 @@
 /* test_state.c - >>state and the frames of >>solve: saved states, and solves that stop and go on. */
 #include "gprojt_design.h"
+#include "gprojt_inside.h"
 
 /* -- frames -- */
 
@@ -417,6 +418,75 @@ GPROJT_TEST(forged_states_do_no_harm) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Takes a forged state: all that follows is finite. A refusal changes neither positions nor variables; it may leave
+   groups of the library's own without a weight. False: numbers were so large that the form has an error. */
+static bool gprojt_try_forged(gproj_form *form, const uint8_t *forged, const uint8_t *state, size_t size,
+                              int32_t taken[2]) {
+    gproj_system *system = gproj_form_system(form);
+    const gproj_mesh *mesh = gprojt_inside_mesh(form);
+    size_t bytes = (size_t)gproj_system_variable_count(system) * sizeof(double);
+    double *kept = gprojt_keep(mesh), *variables = (double *)malloc(bytes);
+    bool took;
+    if (!variables) abort();
+    memcpy(variables, gproj_system_values(system), bytes);
+    took = gproj_state_restore(form, forged, size, NULL) == GPROJ_OK;
+    if (took) {
+        gproj_result result = gproj_step_is_on(form) ? gproj_step(form, 0) : gproj_solve(form, 2, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_FAILED || gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.residual <= result.tolerance);
+    } else {
+        GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !memcmp(variables, gproj_system_values(system), bytes));
+    }
+    free(kept), free(variables);
+    taken[took]++;
+    if (gproj_form_error(form)->code != GPROJ_OK) return false;
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    return true;
+}
+
+/* Each byte of a small state in turn is 0, 255, one more and one less, with the right checksum. */
+static void gprojt_forge_each_byte(int design, const gproj_solve_options *options, int32_t steps) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    gproj_form *form = gprojt_design(mesh, design, NULL);
+    double *original = gprojt_keep(mesh);
+    uint8_t *state, *forged;
+    size_t size, i;
+    int32_t k, taken[2] = {0, 0};
+    GPROJT_CHECK(gproj_step_begin(form, GPROJT_ITERATIONS, options));
+    for (k = 0; k < steps; ++k) gproj_step(form, 0);
+    state = gprojt_save(form, &size);
+    forged = (uint8_t *)malloc(size);
+    if (!forged) abort();
+    for (i = 0; i + 8 < size; ++i)
+        for (k = 0; k < 4; ++k) {
+            memcpy(forged, state, size);
+            forged[i] = (uint8_t)(k == 0 ? 0 : k == 1 ? 255 : k == 2 ? state[i] + 1 : state[i] - 1);
+            if (forged[i] == state[i]) continue;
+            gprojt_seal(forged, size);
+            if (gprojt_try_forged(form, forged, state, size, taken)) continue;
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+            gproj_form_destroy(form);
+            gprojt_put_back(mesh, original);
+            form = gprojt_design(mesh, design, NULL);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        }
+    GPROJT_CHECK(taken[0] > 100 && taken[1] > 100); /* refused, taken */
+    free(state), free(forged), free(original);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(each_byte_forged) {
+    static const int designs[4] = {GPROJT_BOUNDED, GPROJT_GLIDING, GPROJT_STANDING, GPROJT_PLAIN};
+    gproj_solve_options options;
+    int way;
+    for (way = 0; way < 4; ++way) { /* before the first step, then amid a plain, a nearest and a smooth solve */
+        memset(&options, 0, sizeof options);
+        options.nearest = way == 2, options.smooth = way == 3;
+        gprojt_forge_each_byte(designs[way], &options, way ? 2 : 0);
+    }
+}
+
 GPROJT_TEST(states_of_others) {
     gproj_mesh *mesh = gprojt_roof(4, 0.05), *moved = gprojt_roof(4, 0.06), *larger = gprojt_roof(5, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL), *other;
@@ -509,6 +579,7 @@ int main(void) {
     GPROJT_RUN(undo_and_redo);
     GPROJT_RUN(every_damage_is_seen);
     GPROJT_RUN(forged_states_do_no_harm);
+    GPROJT_RUN(each_byte_forged);
     GPROJT_RUN(states_of_others);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(failing_allocations);
