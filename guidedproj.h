@@ -19171,21 +19171,28 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     }
 }
 
+/* Makes vertex i of a gliding part look for its segment, and for t1, anew. Vertices that stay are pinned to their places
+   for good; others get a line from the refresh. */
+GPROJI_INTERNAL void gproji_begin_gliding(gproj_form *form, gproji_part *part, int32_t i) {
+    static const double axis[3] = {1, 0, 0}, none[3] = {0, 0, 0};
+    const double *place = form->original + 3 * (size_t)part->vertex[i];
+    part->segment[i] = -1;
+    /* Saved states lack t1: without `none` a solve would depend on the one before. */
+    gproj_system_set_row(form->system, part->group, 3 * i, none, 0);
+    gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
+}
+
 /* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_restart_gliding(gproj_form *form) {
     gproji_part *part;
     int32_t i;
     for (part = form->part; part; part = part->next) {
-        for (i = 0; part->segment && i < part->count; ++i) {
-            if (gproji_stays(part, i)) continue;
-            part->segment[i] = -1;
-            gproj_system_set_row_weight(form->system, part->group, 3 * i + 2, 0);
-        }
+        for (i = 0; part->segment && i < part->count; ++i)
+            if (!gproji_stays(part, i)) gproji_begin_gliding(form, part, i);
     }
 }
 
 GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *part, const char *name, double weight) {
-    static const double axis[3] = {1, 0, 0};
     int32_t i, k, c;
     part->segment = (int32_t *)gproji_take(&form->own, (size_t)part->count, sizeof *part->segment);
     if (!part->segment) {
@@ -19195,14 +19202,10 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_part(gproj_form *form, gproji_part *p
     part->group =
         gproji_new_group(form, name, GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, weight, gproji_refresh_gliding, part);
     for (i = 0; i < part->count; ++i) {
-        const double *place = form->original + 3 * (size_t)part->vertex[i];
         gproj_term term[3];
-        part->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
-        /* Vertices that stay are pinned to their places for good; others get a line from the refresh. */
-        if (gproji_form_ready(form))
-            gproji_set_gliding(form->system, part->group, 3 * i, axis, place, gproji_stays(part, i));
+        if (gproji_form_ready(form)) gproji_begin_gliding(form, part, i);
     }
     return gproji_form_ready(form) ? part->group : -1;
 }

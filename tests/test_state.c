@@ -487,6 +487,154 @@ GPROJT_TEST(each_byte_forged) {
     }
 }
 
+/* -- ranges: a number that stands once in a state is found by its bits, and replaced -- */
+
+static bool gprojt_takes(gproj_form *form, const uint8_t *state, size_t size, const void *old, const void *other,
+                         size_t width) {
+    uint8_t *forged = (uint8_t *)malloc(size);
+    size_t i, found = 0, times = 0;
+    bool took;
+    if (!forged) abort();
+    memcpy(forged, state, size);
+    for (i = 24; i + width + 8 <= size; ++i)
+        if (memcmp(state + i, old, width) == 0) found = i, ++times;
+    GPROJT_CHECK(times == 1);
+    memcpy(forged + found, other, width);
+    gprojt_seal(forged, size);
+    took = gproj_state_restore(form, forged, size, NULL) == GPROJ_OK;
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    free(forged);
+    return took;
+}
+
+/* From least to most, both included, and nothing else; infinities as `infinite` says. */
+static void gprojt_check_range(gproj_form *form, const uint8_t *state, size_t size, double mark, double least,
+                               double most) {
+    double wrong[3] = {NAN, HUGE_VAL, -HUGE_VAL}, other;
+    int k;
+    for (k = 0; k < 3; ++k) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &wrong[k], 8));
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &least, 8));
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &most, 8));
+    other = nextafter(least, -HUGE_VAL);
+    if (least > -DBL_MAX) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &other, 8));
+    other = nextafter(most, HUGE_VAL);
+    if (most < DBL_MAX) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &other, 8));
+}
+
+static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t size, int32_t mark) {
+    int32_t least = 0, below = -1, lowest = INT32_MIN;
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &least, 4));
+    GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &below, 4));
+    GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &lowest, 4));
+}
+
+/* What is out of the range that the functions accept is not read, whatever the checksum says. The numbers of the machine
+   stand in a state as here if it is little-endian. */
+GPROJT_TEST(numbers_out_of_range) {
+    static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
+    static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
+    static const int32_t last = 123456789, iterations = 7654321, one = 1;
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    int32_t closeness = gproj_add_closeness(form, 1), face = 2;
+    gproj_solve_options options;
+    gprojt_ticks ticks = {0, 0};
+    gproj_host host;
+    uint8_t *state;
+    size_t size;
+    if (*(const uint8_t *)&one != 1) GPROJT_SKIP("not on big-endian machines");
+    memset(&options, 0, sizeof options);
+    gproj_set_schedule(form, closeness, gprojt_schedule(weight, decay, last));
+    gproj_set_element_weights(form, 0, 1, &face, &factor);
+    mesh->position[5] = height;
+    state = gprojt_save(form, &size);
+    gprojt_check_range(form, state, size, weight, 0, 1e50);
+    gprojt_check_range(form, state, size, decay, 0, 1);
+    gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
+    gprojt_check_integers(form, state, size, last);
+    free(state);
+    gproj_form_destroy(form);
+    memset(&host, 0, sizeof host);
+    host.clock.now = gprojt_tick, host.clock.user = &ticks;
+    form = gprojt_design(mesh, GPROJT_PLANAR, &host);
+    options.tolerance = tolerance, options.epsilon = epsilon, options.time_budget = budget;
+    GPROJT_REQUIRE(gproj_step_begin(form, iterations, &options));
+    state = gprojt_save(form, &size);
+    gprojt_check_range(form, state, size, tolerance, 0, DBL_MAX);
+    gprojt_check_range(form, state, size, epsilon, 0, DBL_MAX);
+    gprojt_check_range(form, state, size, budget, 0, DBL_MAX);
+    gprojt_check_integers(form, state, size, iterations);
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- nothing of later solves stays behind a restore -- */
+
+GPROJT_TEST(solved_again_after_a_restore) {
+    gproj_solve_options options[3];
+    int design, k, other;
+    memset(options, 0, sizeof options);
+    options[1].nearest = true, options[2].smooth = true;
+    for (design = 0; design < GPROJT_DESIGNS; ++design)
+        for (k = 0; k < 3; ++k)
+            for (other = 0; other < 3; ++other) {
+                gproj_mesh *mesh = gprojt_roof(4, 0.1);
+                gproj_form *form = gprojt_design(mesh, design, NULL);
+                gproj_result first, second;
+                double *end;
+                uint8_t *state;
+                size_t size;
+                gproj_solve(form, 4, &options[other]);
+                gprojt_shake(mesh, 0.05, 9);
+                gproj_solve(form, 1, &options[k]); /* all groups of the library's own are there */
+                state = gprojt_save(form, &size);
+                first = gproj_solve(form, 12, &options[k]);
+                end = gprojt_keep(mesh);
+                gprojt_shake(mesh, 0.2, 3);
+                gproj_solve(form, 5, &options[other]);
+                GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+                second = gproj_solve(form, 12, &options[k]);
+                GPROJT_CHECK(first.outcome == second.outcome && first.iterations == second.iterations);
+                GPROJT_CHECK(gprojt_unmoved(mesh, end));
+                free(state), free(end);
+                gproj_form_destroy(form);
+                gproj_mesh_destroy(mesh);
+            }
+}
+
+/* Safeguards of rough meshes act for many iterations: a fresh form goes on with them, and so does the same form, which
+   has more of them at the end. */
+GPROJT_TEST(safeguards_go_on) {
+    int32_t way, k, at;
+    for (way = 0; way < 2; ++way)
+        for (at = 1; at < 8; ++at) {
+            gproj_mesh *mesh = gprojt_roof(6, 0.35), *other = gprojt_roof(6, 0.35);
+            gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+            gproj_form *fresh = gprojt_design(other, GPROJT_PLANAR, NULL);
+            gproj_solve_options options;
+            double *end;
+            uint8_t *state;
+            size_t size;
+            memset(&options, 0, sizeof options);
+            options.smooth = way == 1;
+            gproj_step_begin(form, 30, &options);
+            for (k = 0; k < at && gproj_step_is_on(form); ++k) gproj_step(form, 0);
+            state = gprojt_save(form, &size);
+            if (gproj_step_is_on(form)) gprojt_go_on(form);
+            end = gprojt_keep(mesh);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+            if (gproj_step_is_on(form)) gprojt_go_on(form);
+            GPROJT_CHECK(gprojt_largest_move(mesh->position, end, mesh->vertex_count) < 1e-10);
+            GPROJT_CHECK(gproj_state_restore(fresh, state, size, NULL) == GPROJ_OK);
+            if (gproj_step_is_on(fresh)) gprojt_go_on(fresh);
+            GPROJT_CHECK(gprojt_largest_move(other->position, end, mesh->vertex_count) < 1e-10);
+            free(state), free(end);
+            gproj_form_destroy(form), gproj_form_destroy(fresh);
+            gproj_mesh_destroy(mesh), gproj_mesh_destroy(other);
+        }
+}
+
 GPROJT_TEST(states_of_others) {
     gproj_mesh *mesh = gprojt_roof(4, 0.05), *moved = gprojt_roof(4, 0.06), *larger = gprojt_roof(5, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL), *other;
@@ -580,6 +728,9 @@ int main(void) {
     GPROJT_RUN(every_damage_is_seen);
     GPROJT_RUN(forged_states_do_no_harm);
     GPROJT_RUN(each_byte_forged);
+    GPROJT_RUN(numbers_out_of_range);
+    GPROJT_RUN(solved_again_after_a_restore);
+    GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(failing_allocations);
