@@ -339,6 +339,7 @@ static void check_against_dense(gproj_cholesky *c, const matrix *m, const gproj_
     GPROJT_CHECK(info.exact_entries == naive_entries(m, permutation, &flops));
     GPROJT_CHECK(fabs(info.flops - flops) <= 1e-9 * flops);
     GPROJT_CHECK(info.columns == n && info.factor_entries >= info.exact_entries);
+    GPROJT_CHECK(info.factor_bytes >= 8 * (size_t)info.factor_entries);
     if (options->disable_relaxation || options->disable_postorder)
         GPROJT_CHECK(info.factor_entries == info.exact_entries);
     if (options->disable_postorder)

@@ -936,6 +936,61 @@ GPROJT_TEST(gauss_fairness) {
     GPROJT_CHECK(fair < 0.7 * plain);
 }
 
+/* The root mean square of the differences between quads' normals and the means of opposite neighbours', in the plane
+   orthogonal to the normal: two numbers each. */
+static double gprojt_gauss_differences(const gproj_mesh *mesh) {
+    double sum = 0, n[3][3], d[3], along;
+    int32_t f, k, i, count = 0;
+    for (f = 0; f < mesh->face_count; ++f)
+        for (k = 0; k < 2; ++k) {
+            int32_t h = mesh->face_halfedge[f], a, b;
+            if (k) h = mesh->next[h];
+            a = mesh->face[h ^ 1], b = mesh->face[mesh->next[mesh->next[h]] ^ 1];
+            if (a < 0 || b < 0) continue;
+            gproj_mesh_face_area_vector(mesh, f, n[0]);
+            gproj_mesh_face_area_vector(mesh, a, n[1]);
+            gproj_mesh_face_area_vector(mesh, b, n[2]);
+            for (i = 2; i >= 0; --i) {
+                double length = gprojt_length3(n[i]);
+                n[i][0] /= length, n[i][1] /= length, n[i][2] /= length;
+            }
+            for (i = 0; i < 3; ++i) d[i] = n[0][i] - (n[1][i] + n[2][i]) / 2;
+            along = gprojt_dot3(d, n[0]);
+            for (i = 0; i < 3; ++i) d[i] -= along * n[0][i];
+            sum += gprojt_dot3(d, d), count += 2;
+        }
+    return sqrt(sum / count);
+}
+
+/* The planes turn with the faces: a flat grid becomes half a cylinder, all of whose quads are planar, and what the group
+   says at the end is what the normals are then. */
+GPROJT_TEST(gauss_planes_turn_with_the_faces) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(6, 4));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *to = gprojt_keep(mesh), side = 0;
+    int32_t group, v, *all = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof *all);
+    gproj_group_info info;
+    if (!all) abort();
+    for (v = 0; v < 3 * mesh->vertex_count; v += 3) side = fmax(side, to[v]);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double x = to[3 * v] / side, angle = acos(-1.0) * (x + 0.6 * x * (1 - x));
+        all[v] = v;
+        to[3 * v] = -side * cos(angle) / 3, to[3 * v + 2] = side * sin(angle) / 3;
+    }
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, mesh->vertex_count, all, to, 1);
+    group = gproj_add_gauss_fairness(form, 1e-3);
+    gproj_set_schedule(form, group, gprojt_schedule(1e-3, 1, INT32_MAX));
+    gproj_solve(form, 60, NULL);
+    GPROJT_CHECK(gprojt_largest_move(mesh->position, to, mesh->vertex_count) < 1e-4 * side);
+    info = gproj_form_group_info(form, group);
+    GPROJT_CHECK(info.rms > 0.01); /* there is something to compare */
+    GPROJT_NEAR(info.rms, gprojt_gauss_differences(mesh), 1e-3 * info.rms);
+    free(all), free(to);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(gauss_fairness_needs_planarity) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_hybrid_grid(4, 4));
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -2087,6 +2142,7 @@ int main(void) {
     GPROJT_RUN(fairness_at_poles);
     GPROJT_RUN(planarity_with_a_pole);
     GPROJT_RUN(gauss_fairness);
+    GPROJT_RUN(gauss_planes_turn_with_the_faces);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);
