@@ -1,9 +1,7 @@
 /* fuzz_text.c - libFuzzer target for the OBJ and OFF readers. The first byte picks the format.
-   clang -g -O1 -fsanitize=fuzzer,address,undefined fuzz_text.c -o fuzz_text -lm && ./fuzz_text -max_total_time=300 */
-#define GUIDEDPROJ_IMPLEMENTATION
-#include "gprojt_mesh.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+   make -C tests fuzz FUZZ=text SECONDS=300 */
+#define GPROJT_FUZZ "text"
+#include "gprojt_fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     gproj_error error;
