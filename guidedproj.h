@@ -18509,9 +18509,10 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
+    memset(&found, 0, sizeof found);
+    if (info) *info = found;
     if (!object) return NULL;
     memset(&f, 0, sizeof f);
-    memset(&found, 0, sizeof found);
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;

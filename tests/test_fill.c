@@ -726,7 +726,12 @@ static bool gprojt_fill_with(const gproj_host *host, void *user) {
     const gprojt_curve *c = (const gprojt_curve *)user;
     gproj_fill_options options = gprojt_options(c);
     gproj_error error;
-    gproj_mesh *mesh = gproj_mesh_fill(c->count, c->point, &options, NULL, host, &error);
+    gproj_fill_info info, none;
+    gproj_mesh *mesh;
+    memset(&none, 0, sizeof none);
+    memset(&info, 255, sizeof info);
+    mesh = gproj_mesh_fill(c->count, c->point, &options, &info, host, &error);
+    GPROJT_CHECK((mesh != NULL) == (memcmp(&info, &none, sizeof none) != 0));
     return gprojt_mesh_was_made(mesh, host, &error);
 }
 
