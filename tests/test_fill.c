@@ -699,6 +699,28 @@ GPROJT_TEST(angles_are_told) {
     }
 }
 
+/* A long oval without corners gets four, wherever its points begin and however many of them are at the ends. */
+GPROJT_TEST(ovals_have_four_sides) {
+    const double pi = acos(-1.0);
+    int32_t at_end, first, i;
+    for (at_end = 6; at_end < 10; ++at_end)
+        for (first = 0; first < 2 * at_end; ++first) {
+            gprojt_curve c;
+            gproj_fill_info info;
+            gproj_mesh *mesh;
+            memset(&c, 0, sizeof c);
+            for (i = 0; i < 2 * at_end; ++i) {
+                int32_t k = (i + first) % (2 * at_end);
+                double angle = pi * (k % at_end) / (at_end - 1) + (k < at_end ? -pi / 2 : pi / 2);
+                gprojt_add_point(&c, (k < at_end ? 50 : -50) + cos(angle), sin(angle), 0);
+            }
+            mesh = gprojt_fill(&c, &info, NULL);
+            GPROJT_REQUIRE(mesh != NULL);
+            GPROJT_CHECK(info.side_count == 4 && mesh->polyline_count == 4);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 /* Which corner comes first does not matter to what is found inside. */
 GPROJT_TEST(any_side_may_be_first) {
     static const int32_t edges[3][6] = {{2, 6, 4, 5, 3}, {1, 3, 2, 6, 4}, {7, 2, 3, 1, 5}};
@@ -764,6 +786,7 @@ int main(void) {
     GPROJT_RUN(heights_are_harmonic);
     GPROJT_RUN(orientation_is_that_of_the_curve);
     GPROJT_RUN(angles_are_told);
+    GPROJT_RUN(ovals_have_four_sides);
     GPROJT_RUN(any_side_may_be_first);
     GPROJT_RUN(refusals_of_curves);
     GPROJT_RUN(refusals_of_options);

@@ -991,6 +991,44 @@ GPROJT_TEST(gauss_planes_turn_with_the_faces) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Vertices with one face are corners, however little the boundary turns there. */
+GPROJT_TEST(vertices_of_one_face_are_corners) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    int32_t face[12], k;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 12; ++k) {
+        gprojt_add_vertex(&soup, cos(k * acos(-1.0) / 6), sin(k * acos(-1.0) / 6), 0);
+        face[k] = k;
+    }
+    gprojt_add_face(&soup, 12, face);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    for (k = 0; k < 12; ++k) GPROJT_CHECK(gproj_form_is_corner(form, k));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The verdict names the one face that is held bent, and none of those that can move. */
+GPROJT_TEST(faces_held_bent_are_named) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 3);
+    int32_t face = mesh->face_count / 2, corner[4], k, h = mesh->face_halfedge[face];
+    gproj_form *form;
+    gproj_result result;
+    char words[64];
+    for (k = 0; k < 4; ++k, h = mesh->next[h]) corner[k] = mesh->origin[h];
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 4, corner, 1);
+    result = gproj_solve(form, 20, NULL);
+    snprintf(words, sizeof words, "face %d cannot become flat", (int)face);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, words));
+    GPROJT_CHECK(!strstr(result.message, "and others"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(gauss_fairness_needs_planarity) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_hybrid_grid(4, 4));
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -2143,6 +2181,8 @@ int main(void) {
     GPROJT_RUN(planarity_with_a_pole);
     GPROJT_RUN(gauss_fairness);
     GPROJT_RUN(gauss_planes_turn_with_the_faces);
+    GPROJT_RUN(vertices_of_one_face_are_corners);
+    GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);

@@ -311,6 +311,37 @@ GPROJT_TEST(needles) { /* triangles a million times longer than wide */
     }
 }
 
+/* Over the top of a pyramid the normal is the axis, and over a ridge it stays in the plane of symmetry, though the
+   triangles' normals do neither. */
+GPROJT_TEST(normals_of_a_pyramid) {
+    static const double corner[5][3] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 1}};
+    static const double above[3] = {0, 0, 2}, ridge[3] = {0.5, 0.5, 0.75};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_surface *surface;
+    gproj_surface_hit hit;
+    int32_t k;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, corner[k][0], corner[k][1], corner[k][2]);
+    for (k = 0; k < 4; ++k) {
+        int32_t face[3];
+        face[0] = k, face[1] = (k + 1) % 4, face[2] = 4;
+        gprojt_add_face(&soup, 3, face);
+    }
+    mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    surface = gproj_surface_create(mesh, NULL, NULL);
+    GPROJT_REQUIRE(surface != NULL);
+    hit = gproj_surface_closest(surface, above);
+    GPROJT_NEAR(hit.distance, 1, 1e-15);
+    GPROJT_NEAR(hit.normal[2], 1, 1e-14);
+    hit = gproj_surface_closest(surface, ridge);
+    GPROJT_NEAR(hit.normal[0], hit.normal[1], 1e-14);
+    GPROJT_CHECK(hit.normal[0] > 0.05 && hit.normal[2] > 0.5);
+    gproj_surface_destroy(surface);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
+}
+
 GPROJT_TEST(smooth_normals) { /* on a sphere the interpolated normal is the radius, nearly */
     gprojt_soup s = gprojt_cube_sphere(16);
     gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
@@ -482,6 +513,7 @@ int main(void) {
     GPROJT_RUN(curves_from_meshes);
     GPROJT_RUN(surfaces_against_brute_force);
     GPROJT_RUN(needles);
+    GPROJT_RUN(normals_of_a_pyramid);
     GPROJT_RUN(smooth_normals);
     GPROJT_RUN(faces_that_are_not_convex);
     GPROJT_RUN(large_faces_take_linear_time);

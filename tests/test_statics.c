@@ -951,6 +951,34 @@ GPROJT_TEST(forces_are_kept_and_set) {
     free(w), free(again), free(kept), free(solved);
 }
 
+/* Of two parts without supports the verdict names the first, by the first vertex. */
+GPROJT_TEST(parts_without_support_are_named) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_supports supports;
+    gproj_loads loads = gprojt_no_loads();
+    int32_t part, k, pin = 8;
+    memset(&soup, 0, sizeof soup);
+    memset(&supports, 0, sizeof supports);
+    for (part = 0; part < 3; ++part) {
+        int32_t face[4];
+        for (k = 0; k < 4; ++k) {
+            gprojt_add_vertex(&soup, 3 * part + (k == 1 || k == 2), k > 1, 0);
+            face[k] = 4 * part + k;
+        }
+        gprojt_add_face(&soup, 4, face);
+    }
+    mesh = gprojt_mesh_of(soup);
+    loads.density = 1, supports.count = 1, supports.vertex = &pin;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    GPROJT_CHECK(strstr(gproj_solve(form, 10, NULL).message, "the part of the mesh with vertex 0 has no support"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Forces that were set, no others, measured term by term; the octahedron's first vertex is a support that has the first
    half-edge, as any other may have. */
 GPROJT_TEST(forces_measured_one_by_one) {
@@ -975,7 +1003,7 @@ GPROJT_TEST(forces_measured_one_by_one) {
     loads.point_load = load;
     form = gproj_form_create(mesh, NULL);
     gproj_add_equilibrium(form, &loads, &supports, 1);
-    for (e = 0; e < 12; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : 2 + 0.25 * e;
+    for (e = 0; e < 12; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : 2 + 0.25 * (5 * e % 12);
     GPROJT_CHECK(gproj_set_forces(form, w) == GPROJ_OK && gproj_get_reactions(form, reaction) == GPROJ_OK);
     memcpy(sum, load, sizeof sum);
     for (e = 0; e < 12; ++e) {
@@ -1403,6 +1431,9 @@ GPROJT_TEST(refusals_of_equilibrium) {
         form = gproj_form_create(mesh, NULL);
         gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, -1) == -1, GPROJ_ERROR_ARGUMENT,
                              GPROJ_PLACE_NONE, -1);
+        form = gprojt_form_with_equilibrium(mesh);
+        gprojt_check_refused(form, gproj_add_compression(form, 1, NULL, -1) == -1, GPROJ_ERROR_ARGUMENT,
+                             GPROJ_PLACE_NONE, -1);
     }
     gproj_mesh_destroy(mesh);
     free(density), free(point);
@@ -1638,6 +1669,7 @@ int main(void) {
     GPROJT_RUN(funicular_shapes_and_plates);
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_are_kept_and_set);
+    GPROJT_RUN(parts_without_support_are_named);
     GPROJT_RUN(forces_measured_one_by_one);
     GPROJT_RUN(forces_of_any_size_are_set);
     GPROJT_RUN(imbalance_is_a_proof);
