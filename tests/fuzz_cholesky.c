@@ -144,6 +144,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         if (wrong && ways & 1 && m.n) m.permutation[gprojt_next_of(&in, m.n)] = gprojt_next(&in) - 128;
         if (wrong) gprojt_wrong(&in, &m);
         code = gproj_cholesky_analyse(c, m.n, m.start, m.row, &options);
+        gprojt_check_error(gproj_cholesky_error(c));
         GPROJT_MUST(code == GPROJ_OK || wrong || failing.calls >= failing.fail_at);
         if (code != GPROJ_OK || wrong) break; /* what is wrong may be right: then arrays are not as large as they say */
         GPROJT_MUST(gprojt_is_permutation(gproj_cholesky_permutation(c), m.n));

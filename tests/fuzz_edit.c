@@ -64,7 +64,7 @@ static void gprojt_edit(gprojt_input *in, const gproj_mesh *mesh, const gproj_ho
     for (; before && changes > 0 && edit->face_count < 500; --changes) {
         int32_t answer = gprojt_change(in, edit, &error);
         GPROJT_MUST((answer >= 0) == (error.code == GPROJ_OK));
-        if (answer < 0) GPROJT_MUST(error.message[0] && !strchr(error.message, '\n'));
+        if (answer < 0) gprojt_check_error(&error);
         if (answer < 0 && failing->fail_at == 0) GPROJT_MUST(error.code != GPROJ_ERROR_MEMORY);
         after = gprojt_see(edit, failing);
         if (after && answer < 0) GPROJT_MUST(gprojt_same_mesh(before, after));
@@ -113,6 +113,7 @@ static void gprojt_derive(gprojt_input *in, const gproj_mesh *mesh, const gproj_
                                    : gproj_mesh_face_offset(mesh, distance, host, &error),
                *panels;
     GPROJT_MUST((made != NULL) == (error.code == GPROJ_OK));
+    gprojt_check_error(&error);
     if (made) GPROJT_MUST(!gprojt_validate_mesh(made) && gprojt_all_finite(made->position, 3 * made->vertex_count));
     if (made && what) {
         gproj_offset_measures m = gproj_measure_offset(mesh, made);

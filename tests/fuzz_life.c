@@ -292,7 +292,8 @@ static void gprojt_drag_it(gprojt_life *c) {
         if (gprojt_byte(c) & 1) options.residual_bound = gprojt_size_of(c, 0.1);
         options.keep_wishes = gprojt_byte(c) & 1;
         c->drag = gproj_drag_begin(c->form, &handles, &options, &error);
-        GPROJT_MUST((c->drag != NULL) == (error.code == GPROJ_OK) && (c->drag || error.message[0]));
+        GPROJT_MUST((c->drag != NULL) == (error.code == GPROJ_OK));
+        gprojt_check_error(&error);
         GPROJT_MUST(gprojt_unmoved(c->mesh, before));
     } else if (gprojt_byte(c) % 4) {
         const double *to = gprojt_positions(c, c->handles);
@@ -362,7 +363,8 @@ static void gprojt_restore_it(gprojt_life *c) {
     }
     code = gproj_state_restore(c->form, c->state ? forged : NULL, c->state_size, &error);
     finite = gprojt_all_finite(c->mesh->position, 3 * c->mesh->vertex_count);
-    GPROJT_MUST(code == error.code && (code == GPROJ_OK || error.message[0]));
+    GPROJT_MUST(code == error.code);
+    gprojt_check_error(&error);
     if (code != GPROJ_OK) GPROJT_MUST(gprojt_unmoved(c->mesh, before));
     if (code == GPROJ_OK) GPROJT_MUST(finite && c->state);
     if (code == GPROJ_OK && !c->wrong) GPROJT_MUST(gprojt_unmoved(c->mesh, c->saved->position));
@@ -450,7 +452,7 @@ static void gprojt_end_form(gprojt_life *c) {
 static void gprojt_check_sticky(gprojt_life *c) {
     double *before = gprojt_keep(c->mesh);
     gproj_error error = *gproj_form_error(c->form);
-    GPROJT_MUST(error.message[0] && !strchr(error.message, '\n'));
+    gprojt_check_error(&error);
     GPROJT_MUST(error.code != GPROJ_ERROR_MEMORY || gprojt_memory_failed(c));
     GPROJT_MUST(gproj_add_planarity(c->form, 1) == -1 && gproj_state_size(c->form) == 0);
     GPROJT_MUST(gproj_solve(c->form, 3, NULL).outcome == GPROJ_FAILED && !gproj_step_is_on(c->form));

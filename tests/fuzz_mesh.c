@@ -53,6 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     mesh = gprojt_soup_mesh(&s, NULL, &error);
     if ((mesh != NULL) != (error.code == GPROJ_OK)) abort();
+    gprojt_check_error(&error);
     if (mesh) {
         gproj_mesh *copy = gproj_mesh_copy(mesh, NULL, NULL);
         if (gprojt_validate_mesh(mesh) || !copy || !gprojt_same_mesh(mesh, copy)) abort();

@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     mesh = gproj_mesh_read((const char *)data + 1, size - 1, format, NULL, &error);
     if ((mesh != NULL) != (error.code == GPROJ_OK)) abort();
     if (!mesh) {
-        if (!error.message[0] || strchr(error.message, '\n')) abort();
+        gprojt_check_error(&error);
         return 0;
     }
     if (gprojt_validate_mesh(mesh)) abort();

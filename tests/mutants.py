@@ -388,6 +388,20 @@ def open_of(tokens, at):
         at -= 1
 
 
+def compiled_lines():
+    """The header's lines that this machine's compiler sees, behind #if."""
+    run = subprocess.run(["cc", "-std=c11", "-E", "-I", ROOT, "-x", "c", "-"], capture_output=True, text=True,
+                         input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n')
+    lines, inside, at = set(), False, 0
+    for text in run.stdout.split("\n"):
+        mark = re.match(r'# (\d+) "([^"]*)"', text)
+        if mark: inside, at = mark.group(2).endswith("guidedproj.h"), int(mark.group(1))
+        else:
+            if inside and text.strip(): lines.add(at)
+            at += 1
+    return lines
+
+
 def choose(mutants, number, seed, sections):
     """A number for each section by its size, within it every class of changes in turn; one mutant a line, none in another."""
     rng = random.Random(seed)
@@ -624,6 +638,8 @@ def prepare(source, options):
     for name in ("results.jsonl", "reach.json"):
         if os.path.exists(os.path.join(WORK, name)): os.remove(os.path.join(WORK, name))
     mutants = find_mutants(source)
+    compiled = compiled_lines()
+    mutants = [m for m in mutants if m["line"] in compiled]
     for m in mutants: m["span"] = source.count("\n", m["first"], m["last"])
     print(f"mutants: {len(mutants)} possible")
     mutants = choose(mutants, options.number, options.seed, options.section.split(",") if options.section else None)

@@ -606,10 +606,11 @@ GPROJT_TEST(solved_again_after_a_restore) {
 /* Safeguards of rough meshes act for many iterations: a fresh form goes on with them, and so does the same form, which
    has more of them at the end. */
 GPROJT_TEST(safeguards_go_on) {
+    static const double noises[2] = {0.35, 0.7};
     int32_t way, k, at;
-    for (way = 0; way < 2; ++way)
+    for (way = 0; way < 4; ++way)
         for (at = 1; at < 8; ++at) {
-            gproj_mesh *mesh = gprojt_roof(6, 0.35), *other = gprojt_roof(6, 0.35);
+            gproj_mesh *mesh = gprojt_roof(6, noises[way / 2]), *other = gprojt_roof(6, noises[way / 2]);
             gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
             gproj_form *fresh = gprojt_design(other, GPROJT_PLANAR, NULL);
             gproj_solve_options options;
@@ -617,7 +618,7 @@ GPROJT_TEST(safeguards_go_on) {
             uint8_t *state;
             size_t size;
             memset(&options, 0, sizeof options);
-            options.smooth = way == 1;
+            options.smooth = way % 2;
             gproj_step_begin(form, 30, &options);
             for (k = 0; k < at && gproj_step_is_on(form); ++k) gproj_step(form, 0);
             state = gprojt_save(form, &size);
