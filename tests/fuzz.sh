@@ -11,7 +11,7 @@ fuzz() {
     python3 corpus.py start "${name#fuzz_}"
     local used code TIMEFORMAT=%U
     used=$({
-        time $folder/$name -max_total_time=$seconds -timeout=60 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 -verbosity=0 \
+        time $folder/$name -max_total_time=$seconds -timeout=60 -rss_limit_mb=2048 -max_len=4096 -len_control=0 -print_final_stats=1 -verbosity=0 \
             -artifact_prefix=$folder/$name- $folder/$name.corpus >$folder/$name.log 2>&1 </dev/null
     } 2>&1)
     code=$?
