@@ -18,12 +18,13 @@ static inline void gprojt_broken(const char *file, int line, const char *what) {
     abort();
 }
 
-/* Any error: one sentence, and an index only with a place. */
+/* Any error: one sentence, and an index only with a place, or if it is what was wrong. */
 static inline void gprojt_check_error(const gproj_error *error) {
     size_t length = strlen(error->message);
     GPROJT_MUST((error->code == GPROJ_OK) == (length == 0) && length < GPROJ_MESSAGE_SIZE);
     GPROJT_MUST(!strchr(error->message, '\n'));
-    GPROJT_MUST(error->place != GPROJ_PLACE_NONE || error->index == -1 || error->code == GPROJ_OK);
+    GPROJT_MUST(error->place != GPROJ_PLACE_NONE || error->index == -1 || error->code == GPROJ_OK ||
+                error->code == GPROJ_ERROR_INDEX);
 }
 
 /* -- an input that is read byte by byte; behind its end are zeros -- */
