@@ -1,4 +1,4 @@
-/* fuzz_fill.c - libFuzzer target for gproj_mesh_fill: closed curves, with corners and numbers of edges, right and wrong.
+/* fuzz_fill.c - libFuzzer target for gproj_mesh_fill: closed curves with corners and numbers of edges.
    make -C tests fuzz FUZZ=fill SECONDS=300 */
 #define GPROJT_FUZZ "fill"
 #include "gprojt_fuzz.h"

@@ -1,5 +1,5 @@
-/* gprojt_fuzz.h - for the fuzz_*.c: bytes that choose, checks that abort, and a main for programs without libFuzzer, which
-   replays kept inputs: the lines of corpus/NAME.hex, in hexadecimal digits. A fuzz_NAME.c defines GPROJT_FUZZ "NAME". */
+/* gprojt_fuzz.h - for the fuzz_*.c: bytes that choose, checks that abort, and a main for programs without libFuzzer: it
+   replays kept inputs, the lines of corpus/NAME.hex in hexadecimal digits. fuzz_NAME.c defines GPROJT_FUZZ "NAME". */
 #ifndef GPROJT_FUZZ_H
 #define GPROJT_FUZZ_H
 

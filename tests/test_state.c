@@ -528,8 +528,8 @@ static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t
     GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &lowest, 4));
 }
 
-/* What is out of the range that the functions accept is not read, whatever the checksum says. The numbers of the machine
-   stand in a state as here if it is little-endian. */
+/* What is out of the range that the functions accept is not read, whatever the checksum says. Numbers stand in a state as
+   in the memory of little-endian machines. */
 GPROJT_TEST(numbers_out_of_range) {
     static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
     static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
