@@ -19039,10 +19039,11 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproj_fill_info found;
     gproj_code code;
     gproji_error_clear(error);
+    memset(&found, 0, sizeof found);
+    if (info) *info = found;
     object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
     memset(&f, 0, sizeof f);
-    memset(&found, 0, sizeof found);
     f.heap = &object->heap, f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
@@ -19851,14 +19852,23 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     }
 }
 
+/* Makes vertex i of a gliding part look for its segment, and for t1, anew. Vertices that stay are pinned to their places
+   for good; others get a line from the refresh. */
+GPROJI_INTERNAL void gproji_begin_gliding(const gproji_part *part, int32_t i) {
+    static const double axis[3] = {1, 0, 0}, none[3] = {0, 0, 0};
+    gproj_system *system = part->form->system;
+    gproji_gliding_of(part)->segment[i] = -1;
+    /* Saved states lack t1: without `none` a solve would depend on the one before. */
+    gproj_system_set_row(system, part->group, 3 * i, none, 0);
+    gproji_set_gliding(system, part->group, 3 * i, axis, part->form->original + 3 * (size_t)part->vertex[i],
+                       !gproji_curve_at(part, i));
+}
+
 /* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     int32_t i;
-    for (i = 0; i < part->count; ++i) {
-        if (!gproji_curve_at(part, i)) continue;
-        gproji_gliding_of(part)->segment[i] = -1;
-        gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
-    }
+    for (i = 0; i < part->count; ++i)
+        if (gproji_curve_at(part, i)) gproji_begin_gliding(part, i);
 }
 
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
@@ -19886,21 +19896,16 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
     return gliding->segment ? gliding : NULL;
 }
 
-/* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
-   refresh. */
+/* Adds three rows for each vertex. */
 GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight) {
-    static const double axis[3] = {1, 0, 0};
     gproj_form *form = part->form;
     int32_t i, k, c;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
-        const double *place = form->original + 3 * (size_t)part->vertex[i];
         gproj_term term[3];
-        gproji_gliding_of(part)->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
-        if (gproji_form_ready(form))
-            gproji_set_gliding(form->system, part->group, 3 * i, axis, place, !gproji_curve_at(part, i));
+        if (gproji_form_ready(form)) gproji_begin_gliding(part, i);
     }
     return gproji_built(form, part->group);
 }

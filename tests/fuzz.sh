@@ -8,11 +8,15 @@ export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1}"
 fuzz() {
     local name=$1 folder=build/fuzz
     [ -x $folder/$name ] || { echo "fuzz: $name did not build"; return 1; }
-    mkdir -p $folder/$name.corpus
-    if $folder/$name -max_total_time=$seconds -timeout=20 -rss_limit_mb=2048 -max_len=4096 -print_final_stats=1 -verbosity=0 \
-        -artifact_prefix=$folder/$name- $folder/$name.corpus $([ -d fuzz_seeds/$name ] && echo fuzz_seeds/$name) \
-        >$folder/$name.log 2>&1 </dev/null; then
-        echo "fuzz: $name found nothing in $(sed -n 's/.*number_of_executed_units: *//p' $folder/$name.log) runs, $seconds s"
+    python3 corpus.py start "${name#fuzz_}"
+    local used code TIMEFORMAT=%U
+    used=$({
+        time $folder/$name -max_total_time=$seconds -timeout=60 -rss_limit_mb=2048 -max_len=4096 -len_control=0 -print_final_stats=1 -verbosity=0 \
+            -artifact_prefix=$folder/$name- $folder/$name.corpus >$folder/$name.log 2>&1 </dev/null
+    } 2>&1)
+    code=$?
+    if [ $code -eq 0 ]; then
+        echo "fuzz: $name found nothing in $(sed -n 's/.*number_of_executed_units: *//p' $folder/$name.log) runs, $used s of processor time"
     else
         echo "fuzz: $name FAILED"
         tail -n 60 $folder/$name.log

@@ -1,19 +1,7 @@
 /* fuzz_form.c - libFuzzer target for forms: bytes choose a small mesh, what must hold, what is wished, and solves.
-   clang -g -O1 -fsanitize=fuzzer,address,undefined fuzz_form.c -o fuzz_form -lm && ./fuzz_form -max_total_time=300 */
-#define GUIDEDPROJ_IMPLEMENTATION
-#include "gprojt_form.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-#define GPROJT_MUST(condition)                                 \
-    do {                                                       \
-        if (!(condition)) gprojt_broken(__LINE__, #condition); \
-    } while (0)
-
-static void gprojt_broken(int line, const char *what) {
-    fprintf(stderr, "fuzz_form.c:%d: %s\n", line, what);
-    abort();
-}
+   make -C tests fuzz FUZZ=form SECONDS=300 */
+#define GPROJT_FUZZ "form"
+#include "gprojt_fuzz.h"
 
 enum {
     GPROJT_ASKS = 8,
@@ -182,7 +170,7 @@ static int32_t gprojt_add_equilibrium(gprojt_case *c, gprojt_ask *a, double weig
     uint8_t slides[GPROJT_LIST];
     gproj_supports supports;
     int32_t i, kinds = gprojt_byte(c);
-    if (c->form && c->form->statics) return -1;
+    if (c->form && gprojt_inside_has_forces(c->form)) return -1;
     unit = edge > 0 ? edge : 1;
     free(c->density), free(c->point_load);
     memset(&c->loads, 0, sizeof c->loads);
@@ -207,7 +195,7 @@ static int32_t gprojt_add_stress(gprojt_case *c, double weight) {
 /* What is asked of forces; nothing before there are any. */
 static int32_t gprojt_ask_of_forces(gprojt_case *c, const gprojt_ask *a, double weight) {
     int32_t edges[GPROJT_LIST], i;
-    if (!c->form || !c->form->statics) return -1;
+    if (!c->form || !gprojt_inside_has_forces(c->form)) return -1;
     for (i = 0; i < a->count; ++i) edges[i] = c->mesh->edge_count ? gprojt_choose(c, c->mesh->edge_count) : 0;
     if (a->what == GPROJT_STRESS) return gprojt_add_stress(c, weight);
     if (a->what == GPROJT_FAIR_FORCES) return gproj_add_force_fairness(c->form, weight);
@@ -221,7 +209,7 @@ static void gprojt_ask_forces(gprojt_case *c) {
     double *loads, *residuals;
     gproj_forces m;
     int way = gprojt_byte(c);
-    if (!c->form || !c->form->statics || gproj_form_error(c->form)->code != GPROJ_OK) return;
+    if (!c->form || !gprojt_inside_has_forces(c->form) || gproj_form_error(c->form)->code != GPROJ_OK) return;
     loads = gprojt_random_numbers(c, 3 * n, 1);
     residuals = gprojt_random_numbers(c, n, 1);
     free(c->forces);
@@ -258,7 +246,8 @@ static double gprojt_off_balance(const gprojt_case *c) {
         }
     }
     for (e = 0; e < n; ++e)
-        if (c->form->statics->axes[e / 3] >> (e % 3) & 1) off = fmax(off, fabs(sum[e]) - 256 * DBL_EPSILON * size[e]);
+        if (gprojt_inside_axes(c->form, e / 3) >> (e % 3) & 1)
+            off = fmax(off, fabs(sum[e]) - 256 * DBL_EPSILON * size[e]);
     free(sum), free(size), free(w);
     return off;
 }
@@ -371,7 +360,7 @@ static double gprojt_off_segment(const double *a, const double *b, const double 
         at[0] = low + (high - low) / 3, at[1] = high - (high - low) / 3;
         for (side = 0; side < 2; ++side) {
             for (k = 0; k < 3; ++k) q[k] = a[k] + at[side] * (b[k] - a[k]) - p[k];
-            far[side] = gproji_dot3(q, q);
+            far[side] = gprojt_dot3(q, q);
         }
         if (far[0] < far[1])
             high = at[1];
@@ -452,11 +441,11 @@ static void gprojt_check_converged(const gprojt_case *c, const gproj_result *res
     for (i = 0; i < 3 * c->curve_count; ++i) size = fmax(size, scale * fabs(c->point[i]));
     slack = 2 * result->tolerance + 64 * DBL_EPSILON * size;
     for (i = 0; i < c->asks; ++i) { /* a group that has no weight at the end is not asked for */
-        if (c->ask[i].group < 0 || !(c->form->system->group[c->ask[i].group].weight > 0)) continue;
+        if (c->ask[i].group < 0 || !(gprojt_inside_weight(c->form, c->ask[i].group) > 0)) continue;
         if (gprojt_is_partly(c, c->ask[i].group)) continue;
         GPROJT_MUST(scale * gprojt_off(c, &c->ask[i]) <= slack);
         if (c->ask[i].what == GPROJT_EQUILIBRIUM)
-            GPROJT_MUST(c->form->statics->load_scale * gprojt_off_balance(c) <= slack * (1 + size));
+            GPROJT_MUST(gprojt_inside_load_scale(c->form) * gprojt_off_balance(c) <= slack * (1 + size));
         GPROJT_MUST(scale * gprojt_off_bounds(c->mesh, &c->ask[i]) <= slack * (1 + size));
         if (c->ask[i].what != GPROJT_PLANAR) continue;
         planarity = (double *)malloc(((size_t)c->mesh->face_count + 1) * sizeof *planarity);

@@ -1,9 +1,7 @@
 /* fuzz_mesh.c - libFuzzer target for the mesh builder, surfaces and curves: bytes become faces.
-   clang -g -O1 -fsanitize=fuzzer,address,undefined fuzz_mesh.c -o fuzz_mesh -lm && ./fuzz_mesh -max_total_time=300 */
-#define GUIDEDPROJ_IMPLEMENTATION
-#include "gprojt_mesh.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+   make -C tests fuzz FUZZ=mesh SECONDS=300 */
+#define GPROJT_FUZZ "mesh"
+#include "gprojt_fuzz.h"
 
 static void gprojt_try_references(const gproj_mesh *mesh) {
     static const double points[3][3] = {{0, 0, 0}, {1, 2, 3}, {-5, 1e3, 0.25}};
@@ -13,9 +11,9 @@ static void gprojt_try_references(const gproj_mesh *mesh) {
     if ((surface != NULL) != (mesh->face_count > 0)) abort();
     for (i = 0; surface && i < 3; ++i) {
         gproj_surface_hit hit = gproj_surface_closest(surface, points[i]);
-        if (hit.face < 0 || hit.face >= mesh->face_count || !(fabs(gproji_length3(hit.normal) - 1) < 1e-12)) abort();
+        if (hit.face < 0 || hit.face >= mesh->face_count || !(fabs(gprojt_length3(hit.normal) - 1) < 1e-12)) abort();
         for (k = 0; k < 3; ++k) {
-            if (!gproji_is_finite(hit.point[k])) abort();
+            if (!(fabs(hit.point[k]) < HUGE_VAL)) abort();
         }
     }
     gproj_surface_destroy(surface);
@@ -24,7 +22,7 @@ static void gprojt_try_references(const gproj_mesh *mesh) {
         if (!curve && error.code != GPROJ_ERROR_DEGENERATE) abort();
         for (i = 0; curve && i < 3; ++i) {
             gproj_curve_hit hit = gproj_curve_closest(curve, points[i]);
-            if (!(fabs(gproji_length3(hit.tangent) - 1) < 1e-12) || !(hit.parameter >= 0 && hit.parameter <= 1))
+            if (!(fabs(gprojt_length3(hit.tangent) - 1) < 1e-12) || !(hit.parameter >= 0 && hit.parameter <= 1))
                 abort();
         }
         gproj_curve_destroy(curve);
@@ -55,6 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     mesh = gprojt_soup_mesh(&s, NULL, &error);
     if ((mesh != NULL) != (error.code == GPROJ_OK)) abort();
+    gprojt_check_error(&error);
     if (mesh) {
         gproj_mesh *copy = gproj_mesh_copy(mesh, NULL, NULL);
         if (gprojt_validate_mesh(mesh) || !copy || !gprojt_same_mesh(mesh, copy)) abort();

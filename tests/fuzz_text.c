@@ -1,9 +1,7 @@
 /* fuzz_text.c - libFuzzer target for the OBJ and OFF readers. The first byte picks the format.
-   clang -g -O1 -fsanitize=fuzzer,address,undefined fuzz_text.c -o fuzz_text -lm && ./fuzz_text -max_total_time=300 */
-#define GUIDEDPROJ_IMPLEMENTATION
-#include "gprojt_mesh.h"
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+   make -C tests fuzz FUZZ=text SECONDS=300 */
+#define GPROJT_FUZZ "text"
+#include "gprojt_fuzz.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     gproj_error error;
@@ -15,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     mesh = gproj_mesh_read((const char *)data + 1, size - 1, format, NULL, &error);
     if ((mesh != NULL) != (error.code == GPROJ_OK)) abort();
     if (!mesh) {
-        if (!error.message[0] || strchr(error.message, '\n')) abort();
+        gprojt_check_error(&error);
         return 0;
     }
     if (gprojt_validate_mesh(mesh)) abort();

@@ -14,6 +14,12 @@ int32_t gprojt_inside_force(const gproj_form *form, int32_t edge) { return form-
 int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex) { return form->statics->axes[vertex]; }
 double gprojt_inside_load_scale(const gproj_form *form) { return form->statics->load_scale; }
 
+bool gprojt_inside_has_forces(const gproj_form *form) { return form->statics != NULL; }
+double gprojt_inside_weight(const gproj_form *form, int32_t group) { return form->system->group[group].weight; }
+double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t row) {
+    return form->system->group[group].row[row].weight;
+}
+
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {
     return gproji_volume(mesh, position, height, gradient, NULL);
 }

@@ -19,6 +19,11 @@ int32_t gprojt_inside_axes(const gproj_form *form, int32_t vertex);
 /* The caller's unit of loads in the form's. */
 double gprojt_inside_load_scale(const gproj_form *form);
 
+/* Is there equilibrium? The weights of a group and of one of its rows in the last iteration. */
+bool gprojt_inside_has_forces(const gproj_form *form);
+double gprojt_inside_weight(const gproj_form *form, int32_t group);
+double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t row);
+
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);
 

@@ -339,6 +339,7 @@ static void check_against_dense(gproj_cholesky *c, const matrix *m, const gproj_
     GPROJT_CHECK(info.exact_entries == naive_entries(m, permutation, &flops));
     GPROJT_CHECK(fabs(info.flops - flops) <= 1e-9 * flops);
     GPROJT_CHECK(info.columns == n && info.factor_entries >= info.exact_entries);
+    GPROJT_CHECK(info.factor_bytes >= 8 * (size_t)info.factor_entries);
     if (options->disable_relaxation || options->disable_postorder)
         GPROJT_CHECK(info.factor_entries == info.exact_entries);
     if (options->disable_postorder)
@@ -840,7 +841,8 @@ static void change_owners_of(ownership *o, int32_t first, int32_t end) {
 static void change_owners(ownership *o, bool concurrent) {
     const gproji_symbolic *sy = o->sy;
     int32_t k;
-    for (k = 0; concurrent && k < GPROJI_TASK_LEVELS; ++k) change_owners_of(o, sy->level_start[k], sy->level_start[k + 1]);
+    for (k = 0; concurrent && k < GPROJI_TASK_LEVELS; ++k)
+        change_owners_of(o, sy->level_start[k], sy->level_start[k + 1]);
     for (k = concurrent ? sy->task_start[sy->tasks] : 0; k < sy->fronts; ++k) {
         begin_front(o, sy->schedule[k]);
         end_front(o, sy->schedule[k]);
@@ -992,6 +994,30 @@ static bool factor_with(const gproj_host *host, void *user) {
     return outcome == GPROJ_FACTORED;
 }
 
+/* The first factorisation takes the memory that the analysis has foretold, but for a few small arrays. */
+GPROJT_TEST(cholesky_memory_is_foretold) {
+    int32_t band, j, i;
+    for (band = 1; band < 300; band *= 4) {
+        gproj_cholesky *c = gproj_cholesky_create(NULL);
+        gproj_cholesky_info info;
+        matrix m;
+        size_t before, taken;
+        memset(&m, 0, sizeof m);
+        m.n = 160;
+        for (j = 0; j < m.n; ++j)
+            for (i = j; i < m.n && i <= j + band; ++i) matrix_add(&m, i, j, i == j ? 200 : 1);
+        matrix_finish(&m);
+        GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, NULL) == GPROJ_OK);
+        info = gproj_cholesky_get_info(c);
+        before = gproj_cholesky_memory(c).used;
+        GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_FACTORED);
+        taken = gproj_cholesky_memory(c).used - before;
+        GPROJT_NEAR((double)taken, (double)(info.factor_bytes + info.work_bytes), 0.05 * (double)taken);
+        gproj_cholesky_destroy(c);
+        matrix_free(&m);
+    }
+}
+
 GPROJT_TEST(cholesky_every_allocation_fails) {
     factoring f;
     int32_t *order;
@@ -1050,6 +1076,7 @@ int main(void) {
     GPROJT_RUN(cholesky_panels_and_updates_share_memory);
     GPROJT_RUN(cholesky_arguments);
     GPROJT_RUN(cholesky_sizes);
+    GPROJT_RUN(cholesky_memory_is_foretold);
     GPROJT_RUN(cholesky_every_allocation_fails);
     GPROJT_RUN(cholesky_large);
     return gprojt_report();

@@ -640,9 +640,10 @@ GPROJT_TEST(refusals_of_options) {
     c.corner[2] = 12;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, 12, "the points are 0 to 11"));
     c = good, c.corner_count = 1;
-    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "at least 2"));
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "1 corners; give at least 2"));
     c = good, c.marked = false, c.options.corner_count = 3;
-    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "NULL"));
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "3 corners in an array that is NULL"));
     c = good, c.options.variant = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant"));
     c = good, c.options.rings = -1;
@@ -667,13 +668,92 @@ GPROJT_TEST(refusals_of_options) {
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 0, "at least 4"));
 }
 
+/* -- what is told -- */
+
+/* The angles at the quads' corners of a flat mesh, in degrees, from the sides' lengths by the law of cosines (none of 180
+   or more occurs). */
+GPROJT_TEST(angles_are_told) {
+    uint64_t state = 12;
+    int k;
+    for (k = 0; k < 12; ++k) {
+        gprojt_curve c = gprojt_random_curve(&state, 3 + k % 4, 0);
+        gproj_fill_info info;
+        double least = 180, most = 0;
+        gproj_mesh *mesh;
+        int32_t i, h;
+        for (i = 0; i < c.count; ++i) c.point[3 * i + 2] = 0;
+        mesh = gprojt_fill(&c, &info, NULL);
+        if (!mesh) continue;
+        for (h = 0; h < mesh->halfedge_count; ++h) {
+            const double *a = mesh->position + 3 * mesh->origin[mesh->prev[h]],
+                         *b = mesh->position + 3 * mesh->origin[h];
+            const double *d = mesh->position + 3 * mesh->origin[mesh->next[h]];
+            double p = gprojt_far(a, b), q = gprojt_far(b, d), r = gprojt_far(a, d), angle;
+            if (mesh->face[h] < 0) continue;
+            angle = acos(fmin(fmax((p * p + q * q - r * r) / (2 * p * q), -1), 1)) * 180 / acos(-1.0);
+            least = fmin(least, angle), most = fmax(most, angle);
+        }
+        GPROJT_NEAR(info.min_angle, least, 1e-4);
+        GPROJT_NEAR(info.max_angle, most, 1e-4);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A long oval without corners gets four, wherever its points begin and however many of them are at the ends. */
+GPROJT_TEST(ovals_have_four_sides) {
+    const double pi = acos(-1.0);
+    int32_t at_end, first, i;
+    for (at_end = 6; at_end < 10; ++at_end)
+        for (first = 0; first < 2 * at_end; ++first) {
+            gprojt_curve c;
+            gproj_fill_info info;
+            gproj_mesh *mesh;
+            memset(&c, 0, sizeof c);
+            for (i = 0; i < 2 * at_end; ++i) {
+                int32_t k = (i + first) % (2 * at_end);
+                double angle = pi * (k % at_end) / (at_end - 1) + (k < at_end ? -pi / 2 : pi / 2);
+                gprojt_add_point(&c, (k < at_end ? 50 : -50) + cos(angle), sin(angle), 0);
+            }
+            mesh = gprojt_fill(&c, &info, NULL);
+            GPROJT_REQUIRE(mesh != NULL);
+            GPROJT_CHECK(info.side_count == 4 && mesh->polyline_count == 4);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
+/* Which corner comes first does not matter to what is found inside. */
+GPROJT_TEST(any_side_may_be_first) {
+    static const int32_t edges[3][6] = {{2, 6, 4, 5, 3}, {1, 3, 2, 6, 4}, {7, 2, 3, 1, 5}};
+    int k, shift, i;
+    for (k = 0; k < 3; ++k) {
+        int32_t irregular = -1;
+        for (shift = 0; shift < 5; ++shift) {
+            gprojt_curve c = gprojt_rose(5, 4, 0);
+            gproj_fill_info info;
+            gproj_mesh *mesh;
+            for (i = 0; i < 5; ++i) c.edges[i] = edges[k][(i + shift) % 5];
+            c.given = true;
+            mesh = gprojt_fill(&c, &info, NULL);
+            GPROJT_REQUIRE(mesh != NULL);
+            if (irregular < 0) irregular = info.irregular_count;
+            GPROJT_CHECK(info.irregular_count == irregular);
+            gproj_mesh_destroy(mesh);
+        }
+    }
+}
+
 /* -- memory -- */
 
 static bool gprojt_fill_with(const gproj_host *host, void *user) {
     const gprojt_curve *c = (const gprojt_curve *)user;
     gproj_fill_options options = gprojt_options(c);
     gproj_error error;
-    gproj_mesh *mesh = gproj_mesh_fill(c->count, c->point, &options, NULL, host, &error);
+    gproj_fill_info info, none;
+    gproj_mesh *mesh;
+    memset(&none, 0, sizeof none);
+    memset(&info, 255, sizeof info);
+    mesh = gproj_mesh_fill(c->count, c->point, &options, &info, host, &error);
+    GPROJT_CHECK((mesh != NULL) == (memcmp(&info, &none, sizeof none) != 0));
     return gprojt_mesh_was_made(mesh, host, &error);
 }
 
@@ -705,6 +785,9 @@ int main(void) {
     GPROJT_RUN(anywhere_in_space);
     GPROJT_RUN(heights_are_harmonic);
     GPROJT_RUN(orientation_is_that_of_the_curve);
+    GPROJT_RUN(angles_are_told);
+    GPROJT_RUN(ovals_have_four_sides);
+    GPROJT_RUN(any_side_may_be_first);
     GPROJT_RUN(refusals_of_curves);
     GPROJT_RUN(refusals_of_options);
     GPROJT_RUN(every_allocation_fails_once);

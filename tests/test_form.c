@@ -966,6 +966,99 @@ GPROJT_TEST(gauss_fairness) {
     GPROJT_CHECK(fair < 0.7 * plain);
 }
 
+/* The root mean square of the differences between quads' normals and the means of opposite neighbours', in the plane
+   orthogonal to the normal: two numbers each. */
+static double gprojt_gauss_differences(const gproj_mesh *mesh) {
+    double sum = 0, n[3][3], d[3], along;
+    int32_t f, k, i, count = 0;
+    for (f = 0; f < mesh->face_count; ++f)
+        for (k = 0; k < 2; ++k) {
+            int32_t h = mesh->face_halfedge[f], a, b;
+            if (k) h = mesh->next[h];
+            a = mesh->face[h ^ 1], b = mesh->face[mesh->next[mesh->next[h]] ^ 1];
+            if (a < 0 || b < 0) continue;
+            gproj_mesh_face_area_vector(mesh, f, n[0]);
+            gproj_mesh_face_area_vector(mesh, a, n[1]);
+            gproj_mesh_face_area_vector(mesh, b, n[2]);
+            for (i = 2; i >= 0; --i) {
+                double length = gprojt_length3(n[i]);
+                n[i][0] /= length, n[i][1] /= length, n[i][2] /= length;
+            }
+            for (i = 0; i < 3; ++i) d[i] = n[0][i] - (n[1][i] + n[2][i]) / 2;
+            along = gprojt_dot3(d, n[0]);
+            for (i = 0; i < 3; ++i) d[i] -= along * n[0][i];
+            sum += gprojt_dot3(d, d), count += 2;
+        }
+    return sqrt(sum / count);
+}
+
+/* The planes turn with the faces: a flat grid becomes half a cylinder, all of whose quads are planar, and what the group
+   says at the end is what the normals are then. */
+GPROJT_TEST(gauss_planes_turn_with_the_faces) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(6, 4));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *to = gprojt_keep(mesh), side = 0;
+    int32_t group, v, *all = (int32_t *)malloc((size_t)mesh->vertex_count * sizeof *all);
+    gproj_group_info info;
+    if (!all) abort();
+    for (v = 0; v < 3 * mesh->vertex_count; v += 3) side = fmax(side, to[v]);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double x = to[3 * v] / side, angle = acos(-1.0) * (x + 0.6 * x * (1 - x));
+        all[v] = v;
+        to[3 * v] = -side * cos(angle) / 3, to[3 * v + 2] = side * sin(angle) / 3;
+    }
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, mesh->vertex_count, all, to, 1);
+    group = gproj_add_gauss_fairness(form, 1e-3);
+    gproj_set_schedule(form, group, gprojt_schedule(1e-3, 1, INT32_MAX));
+    gproj_solve(form, 60, NULL);
+    GPROJT_CHECK(gprojt_largest_move(mesh->position, to, mesh->vertex_count) < 1e-4 * side);
+    info = gproj_form_group_info(form, group);
+    GPROJT_CHECK(info.rms > 0.01); /* there is something to compare */
+    GPROJT_NEAR(info.rms, gprojt_gauss_differences(mesh), 1e-3 * info.rms);
+    free(all), free(to);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Vertices with one face are corners, however little the boundary turns there. */
+GPROJT_TEST(vertices_of_one_face_are_corners) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    int32_t face[12], k;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 12; ++k) {
+        gprojt_add_vertex(&soup, cos(k * acos(-1.0) / 6), sin(k * acos(-1.0) / 6), 0);
+        face[k] = k;
+    }
+    gprojt_add_face(&soup, 12, face);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    for (k = 0; k < 12; ++k) GPROJT_CHECK(gproj_form_is_corner(form, k));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* The verdict names the one face that is held bent, and none of those that can move. */
+GPROJT_TEST(faces_held_bent_are_named) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 3);
+    int32_t face = mesh->face_count / 2, corner[4], k, h = mesh->face_halfedge[face];
+    gproj_form *form;
+    gproj_result result;
+    char words[64];
+    for (k = 0; k < 4; ++k, h = mesh->next[h]) corner[k] = mesh->origin[h];
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 4, corner, 1);
+    result = gproj_solve(form, 20, NULL);
+    snprintf(words, sizeof words, "face %d cannot become flat", (int)face);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, words));
+    GPROJT_CHECK(!strstr(result.message, "and others"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(gauss_fairness_needs_planarity) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_hybrid_grid(4, 4));
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -2158,6 +2251,9 @@ int main(void) {
     GPROJT_RUN(fairness_at_poles);
     GPROJT_RUN(planarity_with_a_pole);
     GPROJT_RUN(gauss_fairness);
+    GPROJT_RUN(gauss_planes_turn_with_the_faces);
+    GPROJT_RUN(vertices_of_one_face_are_corners);
+    GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);

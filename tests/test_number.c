@@ -342,6 +342,19 @@ GPROJT_TEST(comma_locale) {
     setlocale(LC_ALL, "C");
 }
 
+/* -- >>error -- */
+
+GPROJT_TEST(the_first_error_stays) {
+    gproj_error error, other;
+    memset(&error, 0, sizeof error);
+    GPROJT_CHECK(gproji_fail(&error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, 17, "face %d", 17) == GPROJ_ERROR_INDEX);
+    other = error;
+    GPROJT_CHECK(gproji_fail(&error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "later") == GPROJ_ERROR_FILE);
+    GPROJT_CHECK(error.code == GPROJ_ERROR_INDEX && error.place == GPROJ_PLACE_FACE && error.index == 17);
+    GPROJT_CHECK(!strcmp(error.message, "face 17") && !memcmp(&error, &other, sizeof error));
+    GPROJT_CHECK(gproji_fail(NULL, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "nobody") == GPROJ_ERROR_FILE);
+}
+
 int main(void) {
     GPROJT_RUN(read_hard_cases);
     GPROJT_RUN(read_ties);
@@ -353,5 +366,6 @@ int main(void) {
     GPROJT_RUN(read_random_texts);
     GPROJT_RUN(write_digits_like_printf);
     GPROJT_RUN(comma_locale);
+    GPROJT_RUN(the_first_error_stays);
     return gprojt_report();
 }

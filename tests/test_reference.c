@@ -94,6 +94,40 @@ GPROJT_TEST(curves_against_brute_force) {
     gprojt_check_curve(x, 333, false, &state, 500, 100);
 }
 
+/* A boundary loop is the closed curve through its vertices from the origin of loop_halfedge on, also if a segment, the
+   first one say, has no length. */
+GPROJT_TEST(loops_are_closed_curves) {
+    static const double round[4][3] = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    int32_t shift, k, face[4] = {0, 1, 2, 3};
+    for (shift = 0; shift < 4; ++shift) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_curve *loop, *curve;
+        double point[12];
+        int32_t h;
+        memset(&soup, 0, sizeof soup);
+        for (k = 0; k < 4; ++k)
+            gprojt_add_vertex(&soup, round[(k + shift) % 4][0], round[(k + shift) % 4][1], round[(k + shift) % 4][2]);
+        gprojt_add_face(&soup, 4, face);
+        mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        h = mesh->loop_halfedge[0];
+        for (k = 0; k < 4; ++k, h = mesh->prev[h])
+            memcpy(point + 3 * k, mesh->position + 3 * mesh->origin[h], 3 * sizeof *point);
+        loop = gproj_curve_from_loop(mesh, 0, NULL, NULL);
+        curve = gproj_curve_create(4, point, true, NULL, NULL);
+        GPROJT_REQUIRE(loop && curve);
+        for (k = 0; k < 4; ++k) {
+            gproj_curve_hit a = gproj_curve_closest(loop, point + 3 * k), b = gproj_curve_closest(curve, point + 3 * k);
+            GPROJT_CHECK(a.segment == b.segment && a.parameter == b.parameter && a.distance == 0 && b.distance == 0);
+            GPROJT_CHECK(gprojt_far(a.tangent, b.tangent) == 0 && gprojt_far(a.point, b.point) == 0);
+        }
+        gproj_curve_destroy(loop), gproj_curve_destroy(curve);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&soup);
+    }
+}
+
 GPROJT_TEST(curve_details) {
     static const double bend[15] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 2, 0};
     static const double corner[3] = {2, -1, 0}, start[3] = {-3, 0, 1}, middle[3] = {0.25, -1, 0};
@@ -158,7 +192,8 @@ GPROJT_TEST(nothing_is_near_nothing) {
     for (i = 0; i < 3; ++i) { /* no object, no point, neither */
         gproj_curve_hit c = gproj_curve_closest(i == 1 ? curve : NULL, i == 0 ? x : NULL);
         gproj_surface_hit f = gproj_surface_closest(i == 1 ? surface : NULL, i == 0 ? x : NULL);
-        GPROJT_CHECK(c.segment == -1 && c.distance > DBL_MAX && c.parameter == 0 && c.point[0] == 0 && c.tangent[2] == 0);
+        GPROJT_CHECK(c.segment == -1 && c.distance > DBL_MAX && c.parameter == 0 && c.point[0] == 0 &&
+                     c.tangent[2] == 0);
         GPROJT_CHECK(f.face == -1 && f.distance > DBL_MAX && f.point[0] == 0 && f.normal[2] == 0);
     }
     gproj_curve_destroy(NULL);
@@ -274,6 +309,37 @@ GPROJT_TEST(needles) { /* triangles a million times longer than wide */
             GPROJT_NEAR(weight[0] * x[0][k] + weight[1] * x[1][k] + weight[2] * x[2][k], out[k], 1e-14);
         }
     }
+}
+
+/* Over the top of a pyramid the normal is the axis, and over a ridge it stays in the plane of symmetry, though the
+   triangles' normals do neither. */
+GPROJT_TEST(normals_of_a_pyramid) {
+    static const double corner[5][3] = {{1, 1, 0}, {-1, 1, 0}, {-1, -1, 0}, {1, -1, 0}, {0, 0, 1}};
+    static const double above[3] = {0, 0, 2}, ridge[3] = {0.5, 0.5, 0.75};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_surface *surface;
+    gproj_surface_hit hit;
+    int32_t k;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, corner[k][0], corner[k][1], corner[k][2]);
+    for (k = 0; k < 4; ++k) {
+        int32_t face[3];
+        face[0] = k, face[1] = (k + 1) % 4, face[2] = 4;
+        gprojt_add_face(&soup, 3, face);
+    }
+    mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    surface = gproj_surface_create(mesh, NULL, NULL);
+    GPROJT_REQUIRE(surface != NULL);
+    hit = gproj_surface_closest(surface, above);
+    GPROJT_NEAR(hit.distance, 1, 1e-15);
+    GPROJT_NEAR(hit.normal[2], 1, 1e-14);
+    hit = gproj_surface_closest(surface, ridge);
+    GPROJT_NEAR(hit.normal[0], hit.normal[1], 1e-14);
+    GPROJT_CHECK(hit.normal[0] > 0.05 && hit.normal[2] > 0.5);
+    gproj_surface_destroy(surface);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
 }
 
 GPROJT_TEST(smooth_normals) { /* on a sphere the interpolated normal is the radius, nearly */
@@ -440,12 +506,14 @@ GPROJT_TEST(real_meshes) {
 
 int main(void) {
     GPROJT_RUN(curves_against_brute_force);
+    GPROJT_RUN(loops_are_closed_curves);
     GPROJT_RUN(curve_details);
     GPROJT_RUN(curve_errors);
     GPROJT_RUN(nothing_is_near_nothing);
     GPROJT_RUN(curves_from_meshes);
     GPROJT_RUN(surfaces_against_brute_force);
     GPROJT_RUN(needles);
+    GPROJT_RUN(normals_of_a_pyramid);
     GPROJT_RUN(smooth_normals);
     GPROJT_RUN(faces_that_are_not_convex);
     GPROJT_RUN(large_faces_take_linear_time);

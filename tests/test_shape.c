@@ -182,6 +182,33 @@ GPROJT_TEST(quads_become_parallelograms) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A trapezoid is no parallelogram: |v0 - v1 + v2 - v3| is the difference of the parallel sides. By the wish alone it
+   becomes one. */
+GPROJT_TEST(trapezoids_become_parallelograms) {
+    static const double sides[4][3] = {{0, 0, 0}, {2, 0, 0}, {1.5, 1, 0}, {0.5, 1, 0}};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_solve_options options;
+    int32_t corner[4] = {0, 1, 2, 3}, group, k;
+    memset(&soup, 0, sizeof soup);
+    memset(&options, 0, sizeof options);
+    for (k = 0; k < 4; ++k) gprojt_add_vertex(&soup, sides[k][0], sides[k][1], sides[k][2]);
+    gprojt_add_face(&soup, 4, corner);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    group = gproj_add_parallelograms(form, 1);
+    gproj_set_schedule(form, group, gprojt_schedule(1, 1, INT32_MAX));
+    for (k = 0; k < 3; ++k)
+        GPROJT_NEAR(fabs(gproj_system_row_value(gproj_form_system(form), group, k, NULL)) * gprojt_unit(form), k == 0,
+                    1e-14);
+    options.skip_closeness = true;
+    gproj_solve(form, 10, &options);
+    GPROJT_CHECK(gprojt_parallelogram_error(mesh) < 1e-6 && gproj_form_group_info(form, group).max < 1e-6);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The area row's derivatives: what it says at x + d against the area there, to second order. */
 GPROJT_TEST(area_rows_are_tangent) {
     gproj_mesh *mesh = gprojt_noisy(CUBE_SPHERE, 3, 0.1, 8);
@@ -340,6 +367,7 @@ int main(void) {
     GPROJT_RUN(volume_is_reached);
     GPROJT_RUN(areas_become_more_equal);
     GPROJT_RUN(quads_become_parallelograms);
+    GPROJT_RUN(trapezoids_become_parallelograms);
     GPROJT_RUN(area_rows_are_tangent);
     GPROJT_RUN(lengths);
     GPROJT_RUN(equal_lengths);

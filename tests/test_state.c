@@ -1,5 +1,6 @@
 /* test_state.c - >>state and the frames of >>solve: saved states, and solves that stop and go on. */
 #include "gprojt_design.h"
+#include "gprojt_inside.h"
 
 /* -- frames -- */
 
@@ -448,6 +449,224 @@ GPROJT_TEST(forged_states_do_no_harm) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Takes a forged state: all that follows is finite. A refusal changes neither positions nor variables; it may leave
+   groups of the library's own without a weight. False: numbers were so large that the form has an error. */
+static bool gprojt_try_forged(gproj_form *form, const uint8_t *forged, const uint8_t *state, size_t size,
+                              int32_t taken[2]) {
+    gproj_system *system = gproj_form_system(form);
+    const gproj_mesh *mesh = gprojt_inside_mesh(form);
+    size_t bytes = (size_t)gproj_system_variable_count(system) * sizeof(double);
+    double *kept = gprojt_keep(mesh), *variables = (double *)malloc(bytes);
+    bool took;
+    if (!variables) abort();
+    memcpy(variables, gproj_system_values(system), bytes);
+    took = gproj_state_restore(form, forged, size, NULL) == GPROJ_OK;
+    if (took) {
+        gproj_result result = gproj_solve_is_on(form) ? gproj_solve_advance(form, 0) : gproj_solve(form, 2, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_FAILED || gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.residual <= result.tolerance);
+    } else {
+        GPROJT_CHECK(gprojt_unmoved(mesh, kept) && !memcmp(variables, gproj_system_values(system), bytes));
+    }
+    free(kept), free(variables);
+    taken[took]++;
+    if (gproj_form_error(form)->code != GPROJ_OK) return false;
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    return true;
+}
+
+/* Each byte of a small state in turn is 0, 255, one more and one less, with the right checksum. */
+static void gprojt_forge_each_byte(int design, const gproj_solve_options *options, int32_t steps) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    gproj_form *form = gprojt_design(mesh, design, NULL);
+    double *original = gprojt_keep(mesh);
+    uint8_t *state, *forged;
+    size_t size, i;
+    int32_t k, taken[2] = {0, 0};
+    GPROJT_CHECK(gproj_solve_begin(form, GPROJT_ITERATIONS, options, NULL));
+    for (k = 0; k < steps; ++k) gproj_solve_advance(form, 0);
+    state = gprojt_save(form, &size);
+    forged = (uint8_t *)malloc(size);
+    if (!forged) abort();
+    for (i = 0; i + 8 < size; ++i)
+        for (k = 0; k < 4; ++k) {
+            memcpy(forged, state, size);
+            forged[i] = (uint8_t)(k == 0 ? 0 : k == 1 ? 255 : k == 2 ? state[i] + 1 : state[i] - 1);
+            if (forged[i] == state[i]) continue;
+            gprojt_seal(forged, size);
+            if (gprojt_try_forged(form, forged, state, size, taken)) continue;
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+            gproj_form_destroy(form);
+            gprojt_put_back(mesh, original);
+            form = gprojt_design(mesh, design, NULL);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        }
+    GPROJT_CHECK(taken[0] > 100 && taken[1] > 100); /* refused, taken */
+    free(state), free(forged), free(original);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+GPROJT_TEST(each_byte_forged) {
+    static const int designs[4] = {GPROJT_BOUNDED, GPROJT_GLIDING, GPROJT_STANDING, GPROJT_PLAIN};
+    gproj_solve_options options;
+    int way;
+    for (way = 0; way < 4; ++way) { /* before the first step, then amid a plain, a nearest and a smooth solve */
+        memset(&options, 0, sizeof options);
+        options.nearest = way == 2, options.smooth = way == 3;
+        gprojt_forge_each_byte(designs[way], &options, way ? 2 : 0);
+    }
+}
+
+/* -- ranges: a number that stands once in a state is found by its bits, and replaced -- */
+
+static bool gprojt_takes(gproj_form *form, const uint8_t *state, size_t size, const void *old, const void *other,
+                         size_t width) {
+    uint8_t *forged = (uint8_t *)malloc(size);
+    size_t i, found = 0, times = 0;
+    bool took;
+    if (!forged) abort();
+    memcpy(forged, state, size);
+    for (i = 24; i + width + 8 <= size; ++i)
+        if (memcmp(state + i, old, width) == 0) found = i, ++times;
+    GPROJT_CHECK(times == 1);
+    memcpy(forged + found, other, width);
+    gprojt_seal(forged, size);
+    took = gproj_state_restore(form, forged, size, NULL) == GPROJ_OK;
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    free(forged);
+    return took;
+}
+
+/* From least to most, both included, and nothing else; infinities as `infinite` says. */
+static void gprojt_check_range(gproj_form *form, const uint8_t *state, size_t size, double mark, double least,
+                               double most) {
+    double wrong[3] = {NAN, HUGE_VAL, -HUGE_VAL}, other;
+    int k;
+    for (k = 0; k < 3; ++k) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &wrong[k], 8));
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &least, 8));
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &most, 8));
+    other = nextafter(least, -HUGE_VAL);
+    if (least > -DBL_MAX) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &other, 8));
+    other = nextafter(most, HUGE_VAL);
+    if (most < DBL_MAX) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &other, 8));
+}
+
+static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t size, int32_t mark) {
+    int32_t least = 0, below = -1, lowest = INT32_MIN;
+    GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &least, 4));
+    GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &below, 4));
+    GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &lowest, 4));
+}
+
+/* What is out of the range that the functions accept is not read, whatever the checksum says. Numbers stand in a state as
+   in the memory of little-endian machines. */
+GPROJT_TEST(numbers_out_of_range) {
+    static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
+    static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
+    static const int32_t last = 123456789, iterations = 7654321, one = 1;
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    int32_t closeness = gproj_add_closeness(form, 1), face = 2;
+    gproj_solve_options options;
+    gprojt_ticks ticks = {0, 0};
+    gproj_host host;
+    uint8_t *state;
+    size_t size;
+    if (*(const uint8_t *)&one != 1) GPROJT_SKIP("not on big-endian machines");
+    memset(&options, 0, sizeof options);
+    gproj_set_schedule(form, closeness, gprojt_schedule(weight, decay, last));
+    gproj_set_element_weights(form, 0, 1, &face, &factor);
+    mesh->position[5] = height;
+    state = gprojt_save(form, &size);
+    gprojt_check_range(form, state, size, weight, 0, 1e50);
+    gprojt_check_range(form, state, size, decay, 0, 1);
+    gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
+    gprojt_check_integers(form, state, size, last);
+    free(state);
+    gproj_form_destroy(form);
+    memset(&host, 0, sizeof host);
+    host.clock.now = gprojt_tick, host.clock.user = &ticks;
+    form = gprojt_design(mesh, GPROJT_PLANAR, &host);
+    options.tolerance = tolerance, options.epsilon = epsilon, options.time_budget = budget;
+    GPROJT_REQUIRE(gproj_solve_begin(form, iterations, &options));
+    state = gprojt_save(form, &size);
+    gprojt_check_range(form, state, size, tolerance, 0, DBL_MAX);
+    gprojt_check_range(form, state, size, epsilon, 0, DBL_MAX);
+    gprojt_check_range(form, state, size, budget, 0, DBL_MAX);
+    gprojt_check_integers(form, state, size, iterations);
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- nothing of later solves stays behind a restore -- */
+
+GPROJT_TEST(solved_again_after_a_restore) {
+    gproj_solve_options options[3];
+    int design, k, other;
+    memset(options, 0, sizeof options);
+    options[1].nearest = true, options[2].smooth = true;
+    for (design = 0; design < GPROJT_DESIGNS; ++design)
+        for (k = 0; k < 3; ++k)
+            for (other = 0; other < 3; ++other) {
+                gproj_mesh *mesh = gprojt_roof(4, 0.1);
+                gproj_form *form = gprojt_design(mesh, design, NULL);
+                gproj_result first, second;
+                double *end;
+                uint8_t *state;
+                size_t size;
+                gproj_solve(form, 4, &options[other]);
+                gprojt_shake(mesh, 0.05, 9);
+                gproj_solve(form, 1, &options[k]); /* all groups of the library's own are there */
+                state = gprojt_save(form, &size);
+                first = gproj_solve(form, 12, &options[k]);
+                end = gprojt_keep(mesh);
+                gprojt_shake(mesh, 0.2, 3);
+                gproj_solve(form, 5, &options[other]);
+                GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+                second = gproj_solve(form, 12, &options[k]);
+                GPROJT_CHECK(first.outcome == second.outcome && first.iterations == second.iterations);
+                GPROJT_CHECK(gprojt_unmoved(mesh, end));
+                free(state), free(end);
+                gproj_form_destroy(form);
+                gproj_mesh_destroy(mesh);
+            }
+}
+
+/* Safeguards of rough meshes act for many iterations: a fresh form goes on with them, and so does the same form, which
+   has more of them at the end. */
+GPROJT_TEST(safeguards_go_on) {
+    static const double noises[2] = {0.35, 0.7};
+    int32_t way, k, at;
+    for (way = 0; way < 4; ++way)
+        for (at = 1; at < 8; ++at) {
+            gproj_mesh *mesh = gprojt_roof(6, noises[way / 2]), *other = gprojt_roof(6, noises[way / 2]);
+            gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+            gproj_form *fresh = gprojt_design(other, GPROJT_PLANAR, NULL);
+            gproj_solve_options options;
+            double *end;
+            uint8_t *state;
+            size_t size;
+            memset(&options, 0, sizeof options);
+            options.smooth = way % 2;
+            gproj_solve_begin(form, 30, &options);
+            for (k = 0; k < at && gproj_solve_is_on(form); ++k) gproj_solve_advance(form, 0);
+            state = gprojt_save(form, &size);
+            if (gproj_solve_is_on(form)) gprojt_go_on(form);
+            end = gprojt_keep(mesh);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+            if (gproj_solve_is_on(form)) gprojt_go_on(form);
+            GPROJT_CHECK(gprojt_largest_move(mesh->position, end, mesh->vertex_count) < 1e-10);
+            GPROJT_CHECK(gproj_state_restore(fresh, state, size, NULL) == GPROJ_OK);
+            if (gproj_solve_is_on(fresh)) gprojt_go_on(fresh);
+            GPROJT_CHECK(gprojt_largest_move(other->position, end, mesh->vertex_count) < 1e-10);
+            free(state), free(end);
+            gproj_form_destroy(form), gproj_form_destroy(fresh);
+            gproj_mesh_destroy(mesh), gproj_mesh_destroy(other);
+        }
+}
+
 GPROJT_TEST(states_of_others) {
     gproj_mesh *mesh = gprojt_roof(4, 0.05), *moved = gprojt_roof(4, 0.06), *larger = gprojt_roof(5, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL), *other;
@@ -541,6 +760,10 @@ int main(void) {
     GPROJT_RUN(undo_and_redo);
     GPROJT_RUN(every_damage_is_seen);
     GPROJT_RUN(forged_states_do_no_harm);
+    GPROJT_RUN(each_byte_forged);
+    GPROJT_RUN(numbers_out_of_range);
+    GPROJT_RUN(solved_again_after_a_restore);
+    GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(failing_allocations);

@@ -951,6 +951,91 @@ GPROJT_TEST(forces_are_kept_and_set) {
     free(w), free(again), free(kept), free(solved);
 }
 
+/* Of two parts without supports the verdict names the first, by the first vertex. */
+GPROJT_TEST(parts_without_support_are_named) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_supports supports;
+    gproj_loads loads = gprojt_no_loads();
+    int32_t part, k, pin = 8;
+    memset(&soup, 0, sizeof soup);
+    memset(&supports, 0, sizeof supports);
+    for (part = 0; part < 3; ++part) {
+        int32_t face[4];
+        for (k = 0; k < 4; ++k) {
+            gprojt_add_vertex(&soup, 3 * part + (k == 1 || k == 2), k > 1, 0);
+            face[k] = 4 * part + k;
+        }
+        gprojt_add_face(&soup, 4, face);
+    }
+    mesh = gprojt_mesh_of(soup);
+    loads.density = 1, supports.count = 1, supports.vertex = &pin;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    GPROJT_CHECK(strstr(gproj_solve(form, 10, NULL).message, "the part of the mesh with vertex 0 has no support"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Forces that were set, no others, measured term by term; the octahedron's first vertex is a support that has the first
+   half-edge, as any other may have. */
+GPROJT_TEST(forces_measured_one_by_one) {
+    static const double corner[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+    static const int32_t face[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                       {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    static const int32_t pins[3] = {0, 1, 5};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_forces m;
+    gproj_supports supports = {3, pins, NULL};
+    gproj_loads loads = gprojt_no_loads();
+    double w[12], load[18], sum[18], reaction[18], path = 0, most = 0, largest = 0, force[2] = {HUGE_VAL, -HUGE_VAL};
+    double density[2] = {HUGE_VAL, -HUGE_VAL};
+    int32_t k, c, e;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 6; ++k) gprojt_add_vertex(&soup, corner[k][0], 1.5 * corner[k][1], 2 * corner[k][2]);
+    for (k = 0; k < 8; ++k) gprojt_add_face(&soup, 3, face[k]);
+    mesh = gprojt_mesh_of(soup);
+    for (k = 0; k < 18; ++k) load[k] = k % 3 == 0 ? 3 + k : 0.01 * k; /* mostly along x */
+    loads.point_load = load;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    for (e = 0; e < 12; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : 2 + 0.25 * (5 * e % 12);
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gproj_get_reactions(form, reaction, NULL) == GPROJ_OK);
+    memcpy(sum, load, sizeof sum);
+    for (e = 0; e < 12; ++e) {
+        int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
+        double length = gprojt_far(mesh->position + 3 * i, mesh->position + 3 * j);
+        for (c = 0; c < 3; ++c) {
+            double part = w[e] * (mesh->position[3 * i + c] - mesh->position[3 * j + c]);
+            sum[3 * i + c] += part, sum[3 * j + c] -= part;
+        }
+        path += w[e] * length * length;
+        if (w[e] == 0) continue; /* between two pins */
+        density[0] = fmin(density[0], w[e]), density[1] = fmax(density[1], w[e]);
+        force[0] = fmin(force[0], w[e] * length), force[1] = fmax(force[1], w[e] * length);
+    }
+    for (k = 0; k < 6; ++k) {
+        bool pinned = k < 2 || k == 5;
+        for (c = 0; c < 3; ++c) GPROJT_NEAR(reaction[3 * k + c], pinned ? -sum[3 * k + c] : 0, 1e-12);
+        if (!pinned)
+            most = fmax(most, gprojt_length3(sum + 3 * k)), largest = fmax(largest, gprojt_length3(load + 3 * k));
+    }
+    for (k = 0; k < 6; ++k) largest = fmax(largest, gprojt_length3(load + 3 * k)); /* of all loads */
+    m = gproj_measure_forces(form, NULL);
+    GPROJT_NEAR(m.min_density, density[0], 1e-12);
+    GPROJT_NEAR(m.max_density, density[1], 1e-12);
+    GPROJT_NEAR(m.min_force, force[0], 1e-12);
+    GPROJT_NEAR(m.max_force, force[1], 1e-12);
+    GPROJT_NEAR(m.load_path, path, 1e-11);
+    GPROJT_NEAR(m.residual, most / largest, 1e-12);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Forces of any size are a start: none at all, tiny, and as large as numbers are. */
 GPROJT_TEST(forces_of_any_size_are_set) {
     static const double sizes[] = {0, 1e-300, 1e-12, 1e12, 1e200, 1e300};
@@ -1346,6 +1431,9 @@ GPROJT_TEST(refusals_of_equilibrium) {
         form = gproj_form_create(mesh, NULL);
         gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, -1) == -1, GPROJ_ERROR_ARGUMENT,
                              GPROJ_PLACE_NONE, -1);
+        form = gprojt_form_with_equilibrium(mesh);
+        gprojt_check_refused(form, gproj_add_compression(form, 1, NULL, -1) == -1, GPROJ_ERROR_ARGUMENT,
+                             GPROJ_PLACE_NONE, -1);
     }
     gproj_mesh_destroy(mesh);
     free(density), free(point);
@@ -1660,6 +1748,8 @@ int main(void) {
     GPROJT_RUN(funicular_shapes_and_plates);
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_are_kept_and_set);
+    GPROJT_RUN(parts_without_support_are_named);
+    GPROJT_RUN(forces_measured_one_by_one);
     GPROJT_RUN(forces_of_any_size_are_set);
     GPROJT_RUN(imbalance_is_a_proof);
     GPROJT_RUN(obstacles_are_named);

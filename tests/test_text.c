@@ -189,6 +189,15 @@ GPROJT_TEST(other_formats) {
     stl[80] = 2;
     mesh = gproj_mesh_read(stl, sizeof stl, GPROJ_FORMAT_DETECT, NULL, &error);
     GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "binary STL"));
+    for (i = 0; i < 2; ++i) { /* without triangles, and with so many that their number has two bytes */
+        size_t size = i ? 84 + 300 * 50 : 84;
+        char *large = (char *)calloc(1, size);
+        if (!large) abort();
+        if (i) large[80] = 300 % 256, large[81] = 300 / 256;
+        mesh = gproj_mesh_read(large, size, GPROJ_FORMAT_DETECT, NULL, &error);
+        GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "binary STL"));
+        free(large);
+    }
     mesh = gproj_mesh_read(stl, sizeof stl - 1, GPROJ_FORMAT_DETECT, NULL, &error);
     GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 1, "a zero byte"));
     mesh = gprojt_read_text(solid, &error);

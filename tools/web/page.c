@@ -327,8 +327,8 @@ static bool prepare(void) {
         for (int k = 0; k < RULES; ++k) page.group[k] = -1;
     }
     for (int k = 0; k < RULES; ++k) {
-        gproj_schedule schedule = {page.weight[k], 1, 0};
-        if (k >= FAIRNESS) schedule.last = page.weight[EQUILIBRIUM] > 0 ? 9 : 6; /* as the command line has it */
+        int32_t last = page.weight[EQUILIBRIUM] > 0 ? 9 : 6; /* of wishes, as the command line has it */
+        gproj_schedule schedule = k < FAIRNESS ? gproj_keep(page.weight[k]) : gproj_fade(page.weight[k], last);
         if (page.weight[k] > 0 && page.group[k] < 0) page.group[k] = add_rule((rule)k);
         if (page.group[k] >= 0) gproj_set_schedule(page.form, page.group[k], schedule);
     }

@@ -485,7 +485,7 @@ function asProgram() {
         if (!weights[k] || !r.c) return;
         if (!r.most) out(`    ${r.c};`);
         else out(`    gproj_set_schedule(form, ${r.c}(form, 1),`,
-            `                       (gproj_schedule){${weights[k]}, 1, ${isOn('equilibrium') ? 9 : 6}});`);
+            `                       gproj_fade(${weights[k]}, ${isOn('equilibrium') ? 9 : 6}));`);
     });
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
