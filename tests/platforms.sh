@@ -22,25 +22,25 @@ x87='default_guidance guard_is_no_wish a_stray_vertex terms_in_common generated_
 out=$PWD/build/platforms
 rm -rf "$out" && mkdir -p "$out"
 
-usual='mesh text number state cholesky system form'
+usual='mesh text number state cholesky system form' few='mesh number state system drag'
 # NAME | COMPILER | OPTIONS | RUNNER, @ stands for the program | PROGRAMS
 platforms="
-aarch64    | aarch64-linux-gnu-gcc   | -std=c11 -O2 -static                          | qemu-aarch64-static @ | $usual
-armhf      | arm-linux-gnueabihf-gcc | -std=c11 -O2 -static                          | qemu-arm-static @     | $usual
-riscv64    | riscv64-linux-gnu-gcc   | -std=c11 -O2 -static                          | qemu-riscv64-static @ | $usual
-s390x      | s390x-linux-gnu-gcc     | -std=c11 -O2 -static                          | qemu-s390x-static @   | $usual
-microsoft  | microsoft/cc.sh         | -std=c11 -O2                                  | wine @                | mesh text state form
-windows    | x86_64-w64-mingw32-gcc  | -std=c11 -O2 -static                          | wine @                | $usual
-i686-x87   | i686-linux-gnu-gcc      | -std=c11 -O2 -static -mfpmath=387             | @                     | $usual
-i686-gnu17 | i686-linux-gnu-gcc      | -std=gnu17 -O2 -static -mfpmath=387           | @                     | $usual
-haswell    | gcc                     | -std=gnu17 -O2 -march=haswell                 | @                     | $usual
-O0         | gcc                     | -std=c11 -O0                                  | @                     | mesh number state system drag
-O1         | gcc                     | -std=c11 -O1                                  | @                     | mesh number state system drag
-O3         | gcc                     | -std=c11 -O3                                  | @                     | mesh number state system drag
-Os         | gcc                     | -std=c11 -Os                                  | @                     | mesh number state system drag
-lto        | gcc                     | -std=c11 -O2 -flto=auto                       | @                     | state system
-clang-O3   | clang                   | -std=c11 -O3                                  | @                     | mesh number state system drag
-native     | gcc                     | -std=c11 -O2                                  | @                     |
+aarch64    | aarch64-linux-gnu-gcc   | -std=c11 -O2 -static                | qemu-aarch64-static @ | $usual
+armhf      | arm-linux-gnueabihf-gcc | -std=c11 -O2 -static                | qemu-arm-static @     | $usual
+riscv64    | riscv64-linux-gnu-gcc   | -std=c11 -O2 -static                | qemu-riscv64-static @ | $usual
+s390x      | s390x-linux-gnu-gcc     | -std=c11 -O2 -static                | qemu-s390x-static @   | $usual
+microsoft  | microsoft/cc.sh         | -std=c11 -O2                        | wine @                | mesh text state form
+windows    | x86_64-w64-mingw32-gcc  | -std=c11 -O2 -static                | wine @                | $usual
+i686-x87   | i686-linux-gnu-gcc      | -std=c11 -O2 -static -mfpmath=387   | @                     | $usual
+i686-gnu17 | i686-linux-gnu-gcc      | -std=gnu17 -O2 -static -mfpmath=387 | @                     | $usual
+haswell    | gcc                     | -std=gnu17 -O2 -march=haswell       | @                     | $usual
+O0         | gcc                     | -std=c11 -O0                        | @                     | $few
+O1         | gcc                     | -std=c11 -O1                        | @                     | $few
+O3         | gcc                     | -std=c11 -O3                        | @                     | $few
+Os         | gcc                     | -std=c11 -Os                        | @                     | $few
+lto        | gcc                     | -std=c11 -O2 -flto=auto             | @                     | state system
+clang-O3   | clang                   | -std=c11 -O3                        | @                     | $few
+native     | gcc                     | -std=c11 -O2                        | @                     |
 "
 
 # wine64 stands in Debian's /usr/lib/wine; a home of its own, without the windows that it would open.
@@ -79,9 +79,11 @@ while IFS='|' read -r name compiler options runner programs; do
     folder=$out/$name
     mkdir "$folder"
     echo "cd '$here' && $compiler $options $flags -c gprojt_inside.c -o '$folder/library.o'" >"$folder/library.build"
-    for program in platform_state $([[ $runner != wine* ]] || echo platform_windows) ${programs:+$(printf 'test_%s ' $programs)}; do
+    for program in platform_state $([[ $runner != wine* ]] || echo platform_windows) \
+        ${programs:+$(printf 'test_%s ' $programs)}; do
         file=$folder/$program.exe
-        echo "cd '$here' && $compiler $options $flags $program.c '$folder/library.o' -o '$file' -lm" >"$folder/$program.build"
+        echo "cd '$here' && $compiler $options $flags $program.c '$folder/library.o' -o '$file' -lm" \
+            >"$folder/$program.build"
         run=${runner/@/"'$file'"}
         except=
         case $name-$runner in
@@ -108,8 +110,8 @@ done
 
 [ -z "$wine" ] || "$wine" cmd /c exit >/dev/null 2>&1 </dev/null # makes its home
 for name in "${names[@]}"; do
-    bash "$out/$name/platform_state.sh" write "$out/$name/state" >"$work/write.txt" 2>&1 || fail "$name writes no states: $(head -n 3 "$work/write.txt")"
-    [ -s "$out/$name/state" ] || [ ! -d "$out/$name" ] || rm -f "$out/$name/platform_state.sh"
+    bash "$out/$name/platform_state.sh" write "$out/$name/state" >"$work/write.txt" 2>&1 ||
+        fail "$name writes no states: $(head -n 3 "$work/write.txt")"
 done
 for name in "${names[@]}"; do
     others=$out/native/state

@@ -10,9 +10,11 @@
 extern "C" {
 #endif
 double acos(double), asin(double), atan(double), atan2(double, double), ceil(double), cos(double), exp(double);
-double fabs(double), floor(double), fmax(double, double), fmin(double, double), fmod(double, double), frexp(double, int *);
+double fabs(double), floor(double), fmax(double, double), fmin(double, double), fmod(double, double),
+    frexp(double, int *);
 double hypot(double, double), ldexp(double, int), log(double), log10(double), log2(double), nextafter(double, double);
-double pow(double, double), rint(double), round(double), sin(double), sqrt(double), tan(double), _copysign(double, double);
+double pow(double, double), rint(double), round(double), sin(double), sqrt(double), tan(double),
+    _copysign(double, double);
 double cbrt(double), log1p(double);
 #ifdef __cplusplus
 }

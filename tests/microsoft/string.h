@@ -5,7 +5,8 @@
 extern "C" {
 #endif
 void *memcpy(void *, const void *, size_t), *memmove(void *, const void *, size_t), *memset(void *, int, size_t);
-int memcmp(const void *, const void *, size_t), strcmp(const char *, const char *), strncmp(const char *, const char *, size_t);
+int memcmp(const void *, const void *, size_t), strcmp(const char *, const char *),
+    strncmp(const char *, const char *, size_t);
 size_t strlen(const char *), strspn(const char *, const char *), strcspn(const char *, const char *);
 char *strcpy(char *, const char *), *strcat(char *, const char *);
 #ifdef __cplusplus
