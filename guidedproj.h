@@ -1600,7 +1600,9 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
        ...
        gproj_state_restore(form, undo, size, NULL);
 
-   The bytes are the same on all machines; they may be written to a file. */
+   The bytes have the same meaning on all machines; they may be written to a file. A form is the same if its numbers are,
+   to the last digit: where products are contracted (-ffp-contract=fast, -std=gnu17 with FMA) or registers are longer
+   (x87), states of other machines may be refused. */
 
 /* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
    error of the form. */
