@@ -3,7 +3,8 @@
        platform_state write FILE     two states of each design: at the beginning of a solve, and in the middle
        platform_state read FILE...   tests that such files come out again byte by byte, and that their solves go on
 
-   Forms that begin have the same bytes on all machines that round each operation to double precision; steps, and first
+   A state belongs to a form with the same numbers to the last digit. Machines that round otherwise (x87, contracted
+   products) may refuse each other's, with a sentence and without harm. Forms that begin have the same bytes on all machines that round each operation to double precision; steps, and first
    forces, which come from a least-squares solve, have other last digits, because kernels order sums differently. */
 #include "gprojt_design.h"
 
@@ -43,6 +44,7 @@ static uint8_t *gprojt_nth_state(int n, size_t *size) {
 static int gprojt_write(const char *path) {
     FILE *file = fopen(path, "wb");
     int n, i;
+    if (file) fputc(GPROJT_ROUNDS_OTHERWISE, file);
     for (n = 0; file && n < GPROJT_STATES; ++n) {
         size_t size;
         uint8_t *state = gprojt_nth_state(n, &size);
@@ -80,6 +82,7 @@ static double gprojt_apart(const gproj_mesh *a, const gproj_mesh *b) {
 }
 
 GPROJT_TEST(states_of_another_machine) {
+    bool otherwise = fgetc(gprojt_file) != 0 || GPROJT_ROUNDS_OTHERWISE;
     int n;
     for (n = 0; n < GPROJT_STATES; ++n) {
         gproj_mesh *mesh = gprojt_roof(4, 0.08), *own_mesh = gprojt_roof(4, 0.08);
@@ -92,12 +95,17 @@ GPROJT_TEST(states_of_another_machine) {
         GPROJT_REQUIRE(state);
         memset(&error, 0, sizeof error);
         if (gproj_state_restore(form, state, size, &error) != GPROJ_OK) {
-            printf("  state %d: %s\n", n, error.message);
-            GPROJT_CHECK(!"restored");
+            if (!otherwise) printf("  state %d: %s\n", n, error.message);
+            GPROJT_CHECK(otherwise && error.code == GPROJ_ERROR_ARGUMENT && strstr(error.message, "another form"));
+            gproj_state_restore(form, own_state, own_size, &error);
+            GPROJT_CHECK(error.code == GPROJ_OK);
+            free(state), state = (uint8_t *)malloc(own_size + 1), size = own_size;
+            if (!state) abort();
+            memcpy(state, own_state, size);
         }
         again = gprojt_save(form, &again_size);
         GPROJT_CHECK(again_size == size && memcmp(again, state, size) == 0);
-        if (n % 2 == 0 && n / 2 != GPROJT_STANDING && !GPROJT_ROUNDS_OTHERWISE) {
+        if (n % 2 == 0 && n / 2 != GPROJT_STANDING && !otherwise) {
             GPROJT_CHECK(own_size == size && memcmp(own_state, state, size) == 0);
         }
         GPROJT_NEAR(gprojt_apart(mesh, own_mesh), 0, 1e-9);
