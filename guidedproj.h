@@ -1264,7 +1264,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
-   positions that are not finite or beyond 1e70, here, at each solve, and as targets. */
+   positions that are not finite or beyond 1e70, here, at each solve, and as targets, and a mean edge length between 0 and
+   1e-305. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1718,7 +1719,9 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
        ...
        gproj_state_restore(form, undo, size, NULL);
 
-   The bytes are the same on all machines; they may be written to a file. */
+   The bytes have the same meaning on all machines; they may be written to a file. A form is the same if its numbers are,
+   to the last digit: where products are contracted (-ffp-contract=fast, -std=gnu17 with FMA) or registers are longer
+   (x87), states of other machines may be refused. */
 
 /* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
    error of the form. */
@@ -13410,7 +13413,7 @@ enum {
     GPROJI_WIDE_PREFIX = 8 /* room for \\?\UNC\, which lifts the limit of 260 characters */
 };
 typedef struct gproji_wide_path {
-    wchar_t room[GPROJI_WIDE_PREFIX + GPROJI_PATH_MAX];
+    wchar_t room[GPROJI_WIDE_PREFIX + (size_t)GPROJI_PATH_MAX];
     const wchar_t *text;
 } gproji_wide_path;
 
@@ -16209,7 +16212,7 @@ enum {
 /* Work arrays for cutting faces into triangles. */
 typedef struct gproji_triangulation {
     gproji_polygon polygon;
-    int32_t *halfedge; /* 1 a corner: from it on, in the part that is left */
+    int32_t *halfedge;                 /* 1 a corner: from it on, in the part that is left */
     int32_t ring[GPROJI_KLINCSEK_MAX]; /* the corners left for the comparison */
     int32_t ring_count;
     double *least; /* ring_count^2: the least sum for the ring from i to j */
@@ -16636,18 +16639,34 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
+/* A factor for offsets from a face's mean, so that no square underflows: 1 unless the face is tiny. */
+GPROJI_INTERNAL double gproji_face_unit(const gproj_mesh *mesh, const double *position, int32_t face,
+                                        const double mean[3]) {
+    static const double tiny = 1e-100, most = 1e300;
+    double d[3], extent = 0;
+    int32_t h = mesh->face_halfedge[face], k, i;
+    for (k = 0; k < mesh->face_degree[face] && extent < tiny; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+        for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
+    }
+    return extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
+}
+
 /* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
                                        double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
+    double unit, du, dv;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
     gproji_set3(0, 0, 0, mean);
     for (k = 0; k < degree; ++k, h = mesh->next[h])
         gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
+    unit = gproji_face_unit(mesh, position, face, mean);
     /* The longest direction first and then, from points without their part along it, the one across: so a narrow face
        has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+        for (i = 0; i < 3; ++i) d[i] *= unit;
         for (i = 0; i < 3; ++i)
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
@@ -16655,9 +16674,8 @@ GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *pos
     gproji_tangents3(along, u, v);
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
-        uu += gproji_dot3(d, u) * gproji_dot3(d, u);
-        uv += gproji_dot3(d, u) * gproji_dot3(d, v);
-        vv += gproji_dot3(d, v) * gproji_dot3(d, v);
+        du = unit * gproji_dot3(d, u), dv = unit * gproji_dot3(d, v);
+        uu += du * du, uv += du * dv, vv += dv * dv;
     }
     angle = 0.5 * atan2(2 * uv, uu - vv); /* from u to the direction across */
     for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
@@ -19259,6 +19277,9 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
     return true;
 }
 
+/* Smaller units of length have coordinates with few digits, if they have a finite reciprocal at all. */
+static const double gproji_least_edge = 1e-305;
+
 /* Gives a new form its arrays, units, originals and the system with the vertices. */
 GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     gproj_mesh *mesh = form->mesh;
@@ -19292,7 +19313,10 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
         form->centre[k] = low + (high - low) / 2;
     }
     edge = gproj_mesh_mean_edge_length(mesh);
-    form->scale = edge > 1e-305 ? 1 / edge : 1;
+    if (edge > 0 && edge < gproji_least_edge)
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "the mean edge length is %g, below 1e-305; use a smaller unit of length", edge);
+    form->scale = edge > 0 ? 1 / edge : 1;
     if (!gproji_positions_are_finite(form, &form->error)) return form->error.code; /* in these units, too */
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);

@@ -40,7 +40,7 @@ static void gprojt_problem_of_bytes(gprojt_input *in, gprojt_problem *t) {
     for (j = 0; j < p->rows; ++j) t->b[j] = gprojt_entry(in, ways);
     for (j = 0; j < p->columns; ++j) {
         int kind = gprojt_next(in) % 6;
-        t->lower[j] = kind == 0 ? -HUGE_VAL : kind == 1 ? -HUGE_VAL : kind == 5 ? gprojt_entry(in, ways) : 0;
+        t->lower[j] = kind < 2 ? -HUGE_VAL : kind == 5 ? gprojt_entry(in, ways) : 0;
         t->upper[j] = kind < 4 ? HUGE_VAL : kind == 4 ? t->lower[j] : fmax(t->lower[j], gprojt_entry(in, ways));
         t->x[j] = kind & 1 ? gprojt_entry(in, ways) : 0;
     }

@@ -85,9 +85,10 @@ static const double *gprojt_positions(gprojt_life *c, int32_t count) {
 
 static gproj_schedule gprojt_schedule_of(gprojt_life *c) {
     static const double decays[4] = {0, 1, 0.5, 0.9};
-    gproj_schedule schedule;
-    schedule.weight = gprojt_weight(c), schedule.decay = decays[gprojt_byte(c) % 4];
-    schedule.last = gprojt_byte(c) % 8 - (c->wrong ? 2 : 1);
+    double weight = gprojt_weight(c), decay = decays[gprojt_byte(c) % 4];
+    int32_t last = gprojt_byte(c) % 8;
+    gproj_schedule schedule = last == 0 && !c->wrong ? gproj_guide(weight) : gproj_fade(weight, last);
+    if (decay > 0 || c->wrong) schedule.decay = decay;
     return schedule;
 }
 

@@ -17,7 +17,7 @@ static int gprojt_passed_tests, gprojt_failed_tests, gprojt_skipped_tests;
 static const char *gprojt_skip_reason;
 
 /* GPROJT_TEST(name) { ... } defines a test; GPROJT_RUN(name) in main runs it and prints a line. With GPROJT_ONLY in the
-   environment it runs only if its name begins so. */
+   environment it runs only if its name begins so, with GPROJT_EXCEPT, names between spaces, only if it is none of them. */
 #define GPROJT_TEST(name) static void gprojt_test_##name(void)
 #define GPROJT_RUN(name) gprojt_run(#name, gprojt_test_##name)
 
@@ -54,9 +54,20 @@ static void gprojt_fail(const char *file, int line, const char *what) {
     if (gprojt_failed_checks++ < 20) printf("  %s:%d: %s\n", file, line, what);
 }
 
+static int gprojt_is_excepted(const char *name) {
+    const char *list = getenv("GPROJT_EXCEPT"), *at = list;
+    size_t length = strlen(name);
+    while (at && (at = strstr(at, name)) != NULL) {
+        if ((at == list || at[-1] == ' ') && (at[length] == ' ' || !at[length])) return 1;
+        at += length;
+    }
+    return 0;
+}
+
 static void gprojt_run(const char *name, void (*test)(void)) {
     const char *only = getenv("GPROJT_ONLY");
     if (only && strncmp(name, only, strlen(only)) != 0) return;
+    if (gprojt_is_excepted(name)) return;
     gprojt_failed_checks = 0;
     gprojt_skip_reason = NULL;
     test();

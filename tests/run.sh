@@ -9,7 +9,7 @@ set -u
 cd "$(dirname "$0")" || exit 2
 jobs=2
 if [ "${1:-}" = -j ]; then jobs=$2; shift 2; fi
-export logs=build/log
+export logs=${logs:-build/log}
 export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1:detect_stack_use_after_return=1}"
 export UBSAN_OPTIONS="${UBSAN_OPTIONS:-print_stacktrace=1}"
 export LIMIT="${LIMIT:-900}" # seconds for one test

@@ -1810,6 +1810,24 @@ GPROJT_TEST(an_edge_below_all_squares) {
     }
 }
 
+/* Below 1e-305 there are no units in which residuals could be told: no verdict but an error. No extent at all is allowed. */
+GPROJT_TEST(a_mesh_too_small_for_units) {
+    static const double scales[3] = {1e-306, 1e-310, 0};
+    int i, k;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6);
+        gproj_form *form;
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) mesh->position[k] *= scales[i];
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK((gproj_solve(form, 12, NULL).outcome == GPROJ_FAILED) == (scales[i] > 0));
+        if (scales[i] > 0) GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+        if (scales[i] > 0) GPROJT_CHECK(strstr(gproj_form_error(form)->message, "use a smaller unit of length"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Edges whose squares underflow: the same shape as in other units. */
 GPROJT_TEST(edges_below_all_squares) {
     static const double scales[3] = {1, 1e-200, 1e-290};
@@ -2287,6 +2305,7 @@ int main(void) {
     GPROJT_RUN(positions_beyond_the_units);
     GPROJT_RUN(a_stray_vertex);
     GPROJT_RUN(spheres_are_no_circles);
+    GPROJT_RUN(a_mesh_too_small_for_units);
     GPROJT_RUN(edges_below_all_squares);
     GPROJT_RUN(an_edge_below_all_squares);
     GPROJT_RUN(no_form_and_no_mesh);

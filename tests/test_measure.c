@@ -106,6 +106,23 @@ static void gprojt_turn(const double angle[3], double p[3]) {
     }
 }
 
+/* Faces whose squares underflow: planarity, in mean edge lengths, is that of the same mesh in other units. */
+GPROJT_TEST(planarity_below_all_squares) {
+    static const double scales[5] = {1, 1e-110, 1e-160, 1e-200, 1e-300};
+    double first = 0;
+    int i, k;
+    for (i = 0; i < 5; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(2, 4, 0.1, 6);
+        double planarity;
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) mesh->position[k] *= scales[i];
+        planarity = gproj_measure(mesh, NULL, NULL).planarity_max;
+        if (i == 0) first = planarity;
+        GPROJT_CHECK(first > 0.01);
+        GPROJT_NEAR(planarity, first, 1e-12);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Planar polygons that are narrow, in any direction: what is measured is the rounding of their coordinates. */
 GPROJT_TEST(narrow_planar_faces) {
     static const double quad[8] = {0, 0, 1, 0, 0.9, 1, 0.1, 0.8};
@@ -648,6 +665,7 @@ GPROJT_TEST(faces_with_very_many_corners) {
 int main(void) {
     GPROJT_RUN(planarity_of_a_lifted_square);
     GPROJT_RUN(planarity_is_of_the_least_squares_plane);
+    GPROJT_RUN(planarity_below_all_squares);
     GPROJT_RUN(narrow_planar_faces);
     GPROJT_RUN(narrow_faces_that_are_not_planar);
     GPROJT_RUN(collapsed_edges);

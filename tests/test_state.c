@@ -589,7 +589,7 @@ GPROJT_TEST(numbers_out_of_range) {
     host.clock.now = gprojt_tick, host.clock.user = &ticks;
     form = gprojt_design(mesh, GPROJT_PLANAR, &host);
     options.tolerance = tolerance, options.epsilon = epsilon, options.time_budget = budget;
-    GPROJT_REQUIRE(gproj_solve_begin(form, iterations, &options));
+    GPROJT_REQUIRE(gproj_solve_begin(form, iterations, &options, NULL));
     state = gprojt_save(form, &size);
     gprojt_check_range(form, state, size, tolerance, 0, DBL_MAX);
     gprojt_check_range(form, state, size, epsilon, 0, DBL_MAX);
@@ -650,7 +650,7 @@ GPROJT_TEST(safeguards_go_on) {
             size_t size;
             memset(&options, 0, sizeof options);
             options.smooth = way % 2;
-            gproj_solve_begin(form, 30, &options);
+            gproj_solve_begin(form, 30, &options, NULL);
             for (k = 0; k < at && gproj_solve_is_on(form); ++k) gproj_solve_advance(form, 0);
             state = gprojt_save(form, &size);
             if (gproj_solve_is_on(form)) gprojt_go_on(form);
