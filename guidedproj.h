@@ -121,7 +121,7 @@
 
    FROM THE PAPER TO THE CODE   Each line: section or equation, function, program in examples/, and GPROJT_TEST(name) in
    the file tests/test_....c. A dash: no program.
-     (1)     quadratic rows     gproj_system_add_row          custom_constraint    system: values_and_gradients_by_hand
+     (1)     quadratic rows     gproj_form_add_row            custom_constraint    system: values_and_gradients_by_hand
      (2)     wishes, energy     gproj_system_add_group        -                    loop: schedules
      (3)     one step           gproj_system_solve            -                    system: steps_of_random_systems
      3.1     planar faces       gproj_add_planarity           planarize            form: real_meshes_become_planar
@@ -10594,7 +10594,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
 /* ============================================================================================================
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
-   error, parallel, vector, system, schur.
+   error, parallel, vector, cholesky, stream, system, schur.
 
    Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
@@ -12461,8 +12461,8 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), where constraints have the weight 1 and nothing else acts; bounds act if they touch their limit.
-   Returns the residual. */
+/* Linearises at x (NULL: the own one), where constraints have the weight 1 and nothing else acts; bounds act if they
+   touch their limit. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -19086,7 +19086,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 
 /* ============================================================================================================
    >>form   A mesh and its system: life, units, and what all builders share. Uses platform, memory, error,
-   vector, system, loop, mesh, curve.
+   vector, stream, system, loop, mesh, curve.
 
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
@@ -19556,7 +19556,7 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* ============================================================================================================
    >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
-   system, loop, mesh, curve, surface, measure, form.
+   dense, stream, system, loop, mesh, curve, surface, measure, form.
 
    Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
    for equations phi = 0 that are at most quadratic; others a refresh beside the builder linearises at x before each
@@ -19876,31 +19876,25 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     }
 }
 
-/* Makes vertex i of a gliding part look for its segment, and for t1, anew. Vertices that stay are pinned to their places
-   for good; others get a line from the refresh. */
-GPROJI_INTERNAL void gproji_begin_gliding(const gproji_part *part, int32_t i) {
-    static const double axis[3] = {1, 0, 0}, none[3] = {0, 0, 0};
-    gproj_system *system = part->form->system;
-    gproji_gliding_of(part)->segment[i] = -1;
-    /* Saved states lack t1: without `none` a solve would depend on the one before. */
-    gproj_system_set_row(system, part->group, 3 * i, none, 0);
-    gproji_set_gliding(system, part->group, 3 * i, axis, part->form->original + 3 * (size_t)part->vertex[i],
-                       !gproji_curve_at(part, i));
-}
-
 /* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     int32_t i;
-    for (i = 0; i < part->count; ++i)
-        if (gproji_curve_at(part, i)) gproji_begin_gliding(part, i);
+    for (i = 0; i < part->count; ++i) {
+        if (!gproji_curve_at(part, i)) continue;
+        gproji_gliding_of(part)->segment[i] = -1;
+        gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
+    }
 }
 
+/* Passes segments, and t1, from which the next solve's turns. */
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
-    int32_t i;
+    int32_t i, k, count;
     (void)passing;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
+        gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
         gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        for (k = 0; k < 3; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
     }
 }
 
@@ -19920,16 +19914,21 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
     return gliding->segment ? gliding : NULL;
 }
 
-/* Adds three rows for each vertex. */
+/* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
+   refresh. */
 GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight) {
+    static const double axis[3] = {1, 0, 0};
     gproj_form *form = part->form;
     int32_t i, k, c;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
+        gproji_gliding_of(part)->segment[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
-        if (gproji_form_ready(form)) gproji_begin_gliding(part, i);
+        if (gproji_form_ready(form))
+            gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->vertex[i],
+                               !gproji_curve_at(part, i));
     }
     return gproji_built(form, part->group);
 }
@@ -20828,8 +20827,9 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     return gproji_built(form, part->group);
 }
 
-/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex; ~v stands for the row a'a = 1: a the axis at v_i, e = v_j -
-   v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i, v_j, n_f, n_g. */
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex (~v stands for the row a'a = 1):
+   a the axis at v_i, e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i,
+   v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group,
                                           const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -21329,6 +21329,7 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, double *offset, double *factor) {
     const gproji_unknowns *u = NULL;
     int32_t low = 0, high = form->unknowns.count, at = variable;
+    if (variable < 0) return false;
     if (variable >= 3 * form->mesh->vertex_count) {
         while (low < high) { /* the first block that begins behind it */
             int32_t middle = low + (high - low) / 2;
@@ -21344,7 +21345,7 @@ GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, 
     }
     *offset = !u || u->unit == GPROJ_UNIT_POINT ? form->centre[at % 3] : 0;
     *factor = u && u->unit == GPROJ_UNIT_NUMBER ? 1 : 1 / form->scale;
-    return variable >= 0;
+    return true;
 }
 
 GPROJI_INTERNAL void gproji_start_unknowns(gproji_part *part) {
@@ -21625,8 +21626,8 @@ GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *te
     for (k = 0; k < 3; ++k) term[k].a += s * d[k];
 }
 
-/* Linearises the weight on a vertex: fills in the last terms of the z row, and returns its constant, `constant` being that without
-   weight. */
+/* Linearises the weight on a vertex: fills in the last terms of the z row, and returns its constant, `constant` being
+   that without weight. */
 GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                                int32_t vertex, double constant) {
     static const double none[3] = {0, 0, 0};
@@ -22569,7 +22570,8 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
 }
 
 /* ============================================================================================================
-   >>guard   A face must not lose its area on the way. Uses platform, memory, error, vector, system, loop, mesh, form.
+   >>guard   A face must not lose its area on the way. Uses platform, memory, error, vector, stream, system, loop, mesh,
+   form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
    a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it
@@ -22708,8 +22710,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 }
 
 /* ============================================================================================================
-   >>corners   Faces keep their corners. Uses platform, memory, error, vector, system, loop, mesh, measure, form,
-   guard.
+   >>corners   Faces keep their corners. Uses platform, memory, error, vector, stream, system, loop, mesh,
+   measure, form, guard.
 
    Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular one may
    have lost an edge. So every corner of a face keeps a part of the area that it had
@@ -23833,7 +23835,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 }
 
 /* ============================================================================================================
-   >>state   A form's state as a block of bytes. Uses platform, error, system, schur, loop, curve, form, catalogue,
+   >>state   A form's state as a block of bytes. Uses platform, error, stream, system, schur, loop, curve, form, catalogue,
    statics, guard, corners, solve.
 
    gproji_pass_state describes the format (see >>stream):

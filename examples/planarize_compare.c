@@ -34,8 +34,7 @@ static gproj_mesh *make_roof(void) {
 static void refresh_cubic(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
     const double *x = gproj_system_values(system);
     int32_t f, i, k;
-    (void)progress;
-    for (f = 0, (void)user; f < QUADS; ++f) {
+    for (f = 0, (void)user, (void)progress; f < QUADS; ++f) {
         double e[3][3], g[4][3], constant = 0;
         for (i = 0; i < 9; ++i) e[i / 3][i % 3] = x[3 * corner(f, i / 3 + 1) + i % 3] - x[3 * corner(f, 0) + i % 3];
         for (k = 0; k < 3; ++k) {
@@ -52,13 +51,12 @@ static void refresh_cubic(void *user, gproj_system *system, int32_t group, const
 /* (A), (B): what the roof is like after 0, 1, 2, ... steps, guided by closeness in the first five. */
 static void guided_projection(const gproj_mesh *roof, bool cubic, gproj_measures *measures) {
     gproj_group group = {"det", GPROJ_CONSTRAINT, false, GPROJ_PLACE_FACE, gproj_keep(1), refresh_cubic, NULL};
+    gproj_schedule fading = {0.03, 0.3, 5}; /* 0.03 * 0.3^n, n <= 5 */
     int32_t steps, number, f, i;
     for (steps = 0; steps <= STEPS; ++steps) {
         gproj_mesh *mesh = gproj_mesh_copy(roof, NULL, NULL);
         gproj_form *form = gproj_form_create(mesh, NULL);
-        gproj_schedule closeness = gproj_fade(0.03, 5);
-        closeness.decay = 0.3;
-        gproj_set_schedule(form, gproj_add_closeness(form, 1), closeness);
+        gproj_set_schedule(form, gproj_add_closeness(form, 1), fading);
         number = cubic ? gproj_system_add_group(gproj_form_system(form), &group) : gproj_add_planarity(form, 1);
         for (f = 0; cubic && f < QUADS; ++f) {
             gproj_term term[12];

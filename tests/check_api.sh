@@ -44,7 +44,7 @@ text = open(sys.argv[1], encoding="utf-8").read().split("#ifdef GUIDEDPROJ_IMPLE
 bodies = re.findall(r"^(?:typedef )?enum[^{;]*\{(.*?)\}", re.sub(r"/\*.*?\*/", "", text, flags=re.S), re.M | re.S)
 if len(bodies) < 10: print("the enumerations were not found")
 for word in ",".join(bodies).split(","):
-    if not re.fullmatch(r"(GPROJ_[A-Z0-9_]+( = (0x)?[0-9a-f]+)?)?", word.strip()): print(word.strip())
+    if not re.fullmatch(r"(GPROJ_[A-Z0-9_]+( = -?(0x)?[0-9a-f]+)?)?", word.strip()): print(word.strip())
 END
 if have python3; then
     clean 'enumerators that only a preprocessor finds' "$(python3 "$work/enums.py" "$header")"

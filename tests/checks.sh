@@ -51,7 +51,7 @@ symbols() {
     clean "$1: exported names without the prefix gproj_" "$(awk 'NF == 3 && $2 ~ /[A-Z]/ && $3 !~ /^gproj_/' <<<"$list")"
     clean "$1: mutable data" "$(awk 'NF == 3 && $2 ~ /^[DdBbCcGgSsVvu]$/' <<<"$list")"
     clean "$1: functions of the C library that this library does without" "$(awk '
-        $1 == "U" && $2 ~ /^(setlocale|localeconv|strtod|strtof|strtold|atof|v?f?printf|v?sn?printf|v?f?scanf|puts|putchar|fputs|fputc|exit|_exit|abort|__errno_location|rand|time|clock|getenv|stdout|stderr|stdin)$/' <<<"$list")"
+        $1 == "U" && $2 ~ /^(setlocale|localeconv|strtod|strtof|strtold|atof|v?f?printf|v?sn?printf|v?f?scanf|puts|putchar|fputs|fputc|exit|_exit|abort|__errno_location|rand|time|getenv|stdout|stderr|stdin)$/' <<<"$list")"
 }
 # Constant tables of pointers are constant data only if the code is not position-independent, else data to be relocated.
 fixed='-fno-pic -fno-pie'

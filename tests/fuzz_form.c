@@ -291,11 +291,12 @@ static int32_t gprojt_ask_for(gprojt_case *c, gprojt_ask *a, double weight) {
 
 static void gprojt_schedule_of_bytes(gprojt_case *c, int32_t group) {
     static const double decays[4] = {0, 1, 0.5, 0.9};
-    gproj_schedule schedule;
-    schedule.weight = gprojt_weight_of_bytes(c);
-    schedule.decay = decays[gprojt_choose(c, 4)];
-    schedule.last = gprojt_choose(c, 7) - 1;
-    if (schedule.last == 5) schedule.last = INT32_MAX;
+    double weight = gprojt_weight_of_bytes(c), decay = decays[gprojt_choose(c, 4)];
+    int32_t last = gprojt_choose(c, 6);
+    gproj_schedule schedule = last == 0   ? gproj_guide(weight)
+                              : last == 5 ? gproj_keep(weight)
+                                          : gproj_fade(weight, last);
+    if (decay > 0) schedule.decay = decay;
     gproj_set_schedule(c->form, group, schedule);
 }
 

@@ -4,8 +4,9 @@
        platform_state read FILE...   tests that such files come out again byte by byte, and that their solves go on
 
    A state belongs to a form with the same numbers to the last digit. Machines that round otherwise (x87, contracted
-   products) may refuse each other's, with a sentence and without harm. Forms that begin have the same bytes on all machines that round each operation to double precision; steps, and first
-   forces, which come from a least-squares solve, have other last digits, because kernels order sums differently. */
+   products) may refuse each other's, with a sentence and without harm. Forms that begin have the same bytes on all
+   machines that round each operation to double precision; steps, and first forces, which come from a least-squares
+   solve, have other last digits, because kernels order sums differently. */
 #include "gprojt_design.h"
 
 enum {

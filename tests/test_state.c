@@ -552,8 +552,8 @@ static void gprojt_check_range(gproj_form *form, const uint8_t *state, size_t si
     if (most < DBL_MAX) GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &other, 8));
 }
 
-static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t size, int32_t mark) {
-    int32_t least = 0, below = -1, lowest = INT32_MIN;
+static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t size, int32_t mark, int32_t least) {
+    int32_t below = least - 1, lowest = INT32_MIN;
     GPROJT_CHECK(gprojt_takes(form, state, size, &mark, &least, 4));
     GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &below, 4));
     GPROJT_CHECK(!gprojt_takes(form, state, size, &mark, &lowest, 4));
@@ -582,7 +582,7 @@ GPROJT_TEST(numbers_out_of_range) {
     gprojt_check_range(form, state, size, weight, 0, 1e50);
     gprojt_check_range(form, state, size, decay, 0, 1);
     gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
-    gprojt_check_integers(form, state, size, last);
+    gprojt_check_integers(form, state, size, last, GPROJ_LAST_GUIDING);
     free(state);
     gproj_form_destroy(form);
     memset(&host, 0, sizeof host);
@@ -594,7 +594,7 @@ GPROJT_TEST(numbers_out_of_range) {
     gprojt_check_range(form, state, size, tolerance, 0, DBL_MAX);
     gprojt_check_range(form, state, size, epsilon, 0, DBL_MAX);
     gprojt_check_range(form, state, size, budget, 0, DBL_MAX);
-    gprojt_check_integers(form, state, size, iterations);
+    gprojt_check_integers(form, state, size, iterations, 0);
     free(state);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);

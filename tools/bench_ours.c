@@ -119,7 +119,7 @@ static bool bench_after_iteration(void *user, gproj_system *system, const gproj_
     for (p = 0; p < BENCH_PHASES; ++p) step.seconds[p] = iteration->seconds[phase[p]];
     step.number = iteration->number;
     step.variables = system->variable_count;
-    step.dx = system->step;
+    step.dx = system->vector.step;
     step.largest = iteration->step;
     step.guided = f->guided;
     f->guided = system->stiffness > 0;
@@ -235,7 +235,7 @@ static void bench_rows_of_form(bench_form *f, bench_rows *rows) {
             rows->weight2[count] = gproji_weight2(g, row);
             rows->start[count++] = filled;
             for (l = row->local; l < row[1].local; ++l)
-                bench_insert(rows, rows->start[count - 1], filled++, g->local_variable[l], g->local_gradient[l]);
+                bench_insert(rows, rows->start[count - 1], filled++, g->local.variable[l], g->local.gradient[l]);
         }
     }
     rows->start[count] = filled;
