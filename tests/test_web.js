@@ -356,7 +356,7 @@ const tests = {
         await open();
         const sizes = await wait(async () => {
             const sizes = [];
-            for (let k = 0; k < 200; ++k) {
+            for (let k = 0; k < 500; ++k) {
                 memorySize = 0;
                 choose('Tower');
                 while (!memorySize) await new Promise(resolve => setTimeout(resolve, 4));
@@ -364,7 +364,8 @@ const tests = {
             }
             return sizes;
         });
-        check(sizes[199] === sizes[10], `memory grows from ${sizes[10]} to ${sizes[199]}`);
+        /* The allocator may need one page more (64 KiB) until its pieces fit; what is lost would go on. */
+        check(sizes[499] === sizes[249] && sizes[499] <= sizes[10] + 65536, `memory grows: ${sizes[10]}, ${sizes[249]}, ${sizes[499]}`);
     },
 };
 
