@@ -65,7 +65,8 @@
      stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
      brake            a damping of single variables that acts only after steps have failed
      guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way
-     attempt          a restart of a smooth solve with other stiffness; within one iteration: a factorisation
+     attempt          a run of a smooth solve, which may begin again with other stiffness
+     pass             (a value of a saved state) count, write, check or read it, see >>stream
      verdict          the outcome of a solve and a sentence about it
      spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
      cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
@@ -582,8 +583,8 @@ enum {
 
 GPROJ_API gproj_schedule gproj_keep(double weight);               /* the same weight in all iterations */
 GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last); /* until iteration `last`, then none */
-/* As long as wishes guide a solve: in forms the first half of the iterations (smooth: 10 at most; with forces 9), in systems
-   all. Constraints and bounds keep it. */
+/* The weight while wishes guide a solve, then none: in forms the first half of the iterations (smooth: at most 10; with
+   forces at most 9), in systems all. Constraints and bounds keep it. */
 GPROJ_API gproj_schedule gproj_guide(double weight);
 
 /* One term of a row: a x_i x_j, or a x_i if j is -1. i = j gives a x_i^2. */
@@ -664,7 +665,7 @@ typedef struct gproj_iteration {
     double step;      /* largest |dx| */
     double epsilon;   /* the regularisation used */
     double length;    /* the part of the step that was taken: 1, or another if the merit asked for it */
-    int32_t attempts; /* factorisations: 1, or more if the step was damped, guarded or met bounds */
+    int32_t factorisations; /* 1, or more if the step was damped, guarded or met bounds */
     double optimality;                 /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
@@ -1263,7 +1264,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it. A NULL mesh gives a form whose error says so; so do
+/* The form keeps a pointer to the mesh, which must outlive it: destroy the mesh after the form. A NULL mesh gives a form whose error says so; so do
    positions that are not finite or beyond 1e70, here, at each solve, and as targets, and a mean edge length between 0 and
    1e-305. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
@@ -1318,7 +1319,8 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
    edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* The midpoints m of these edges (NULL: the first `count` ones) are on one unknown sphere: (m'm - 2 c'm + s) / (2 R) = 0,
-   the centre c and s = c'c - r^2 being variables that start at the least-squares sphere, R the radius at first. */
+   the centre c and s = c'c - r^2 being variables that start at the least-squares sphere, R the radius of that sphere when this is called, at least
+   0.001 mean edge lengths. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the
    least-squares plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
@@ -1408,8 +1410,10 @@ typedef enum gproj_unit {
     GPROJ_UNIT_FORCE_INT = 0x7fffffff
 } gproj_unit;
 
-/* Start values of unknowns first..first+count-1, when a solve or a drag begins: the mesh has the positions from which it
-   does. In the mesh's units; on entry `values` has the last ones, at first those of gproj_form_add_unknowns. */
+/* Start values of unknowns first..first+count-1, when a solve or a drag begins: the mesh then has the positions from
+   which that begins. In the mesh's units; on entry `values` has what was written there the last time, at first the
+   values of gproj_form_add_unknowns. Called when the unknowns are added, and by each solve (a smooth one: each attempt)
+   and drag. Must not change the form. */
 typedef void (*gproj_start)(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values);
 
 /* Adds `count` unknowns to a group of gproj_add_rows; returns the first one's number, which terms name, or -1. `values`:
@@ -1421,13 +1425,16 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
 GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values,
                                              gproj_error *error);
 /* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
-   In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Let phi be
-   about a length in the mesh's units, and residuals and weights compare with those of the other constraints: of
-   |v - p|^2 - r^2, a row takes 1 / (2 r). `element`: the vertex, edge or face of the row, or -1. */
+   In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Scale phi to
+   be about a length, so that residuals and weights compare with those of other constraints: divide |v - p|^2 - r^2 by
+   2 r; if r is unknown, by twice its start value (examples/custom_constraint.c). `element`: the vertex, edge or face of the row, or -1. */
 GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
                                      double constant, int32_t element);
-/* What each element of the group's place lacks after a solve: the largest |phi| of its rows, of bounds the violation, in
-   mean edge lengths; 0 without rows. per_element: a number for each vertex, edge or face of the mesh. */
+/* -- groups: residuals and weights -- */
+
+/* What each element of the group's place lacks after a solve, by its last evaluation: the largest |phi| of its rows, of bounds the violation, in
+   mean edge lengths; 0 without rows. Refuses groups whose place is none of vertex, edge and face, and forms that were not
+   solved. per_element: a number for each vertex, edge or face of the mesh; `error` may be NULL. */
 GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
                                           gproj_error *error);
 
@@ -1447,7 +1454,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 /* -- solving -- */
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
-   second call goes on from the end of the first, or from the positions that you have set since. The system's values for
+   second call goes on from the end of the first, or from the positions that you have set since. Positions are written
+   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. The system's values for
    vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" for
    fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
    closeness to the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error
@@ -1459,8 +1467,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
    constraints are met, on paths that differ a little.
 
-   With planar faces there is a guard as well (options: skip_guard): while the wishes guide and two iterations longer, a
-   face that is about to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts
+   With planar faces, or forces that carry, there is a guard as well (options: skip_guard): while the wishes guide and two
+   iterations longer, at least four, a face that is about to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts
    on the steps only, not on residual and verdict. It helps; gproj_measure counts the faces that have turned all the
    same.
 
@@ -1476,8 +1484,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      iterations or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and
      edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
      are let go; gproj_result.spoiled counts the damage.
-   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps, up to
-     three times with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
+     most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
      (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
@@ -1697,8 +1705,8 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag);
    during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
 /* Finds the vertices of a handle with reach: those nearer to `vertex` than `reach` (in the mesh's units, on the shortest
-   path of edges), itself first, in the order of their distances d, with the weights (1 - d^2 / reach^2)^2. One handle
-   with this list takes its neighbourhood along where a vertex alone makes a spike. `vertices` and `weights` have room for
+   path of edges on the mesh as it is), itself first, in the order of their distances d, with the weights (1 - d^2 / reach^2)^2. One handle
+   with this list takes its neighbourhood along where a vertex alone makes a spike; give it the position of `vertex`. `vertices` and `weights` have room for
    vertex_count numbers each. Returns how many were found, 1 with a reach of 0; 0: there is no such vertex, or the form
    has an error. Work: a pass over all vertices, and for each one found a pass over the border of those found. */
 GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights);
@@ -7930,6 +7938,16 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
 /* A group for reading; callers change it by functions of this section. */
 GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t group) { return &s->group[group]; }
 
+/* Have the rows values of a solve or a drag? */
+GPROJI_INLINE bool gproji_is_evaluated(const gproj_system *s) { return s->evaluated; }
+
+/* Forbids or allows that anything is added, as during a solve; returns what was before. */
+GPROJI_INTERNAL bool gproji_hold(gproj_system *s, bool solving) {
+    bool before = s->solving;
+    s->solving = solving;
+    return before;
+}
+
 /* Is a solve under way, so that nothing may be added? */
 GPROJI_INLINE bool gproji_is_solving(const gproj_system *s) { return s->solving; }
 
@@ -11031,7 +11049,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     factored = by_multipliers ? gproji_schur_factor(s)
                               : gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->vector.sides);
-    loop->iteration.attempts++;
+    loop->iteration.factorisations++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
     if (by_multipliers)
@@ -11444,7 +11462,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         epsilon = gproji_fmin(gproji_fmax(epsilon, loop->epsilon_least), gproji_epsilon_max);
     }
     gproji_pass_over(s, 0, gproji_save_task);
-    loop->iteration.attempts = 0;
+    loop->iteration.factorisations = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
         double before = loop->standing.residual;
         bool stepped = gproji_try_step(loop, epsilon);
@@ -11476,7 +11494,7 @@ GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) 
     loop->iteration.merit = loop->standing.merit;
     loop->iteration.energy = loop->standing.energy;
     loop->result.iterations = number;
-    loop->result.damped += loop->iteration.attempts > 1 || loop->iteration.length < 1;
+    loop->result.damped += loop->iteration.factorisations > 1 || loop->iteration.length < 1;
     loop->result.step = loop->iteration.step;
 }
 
@@ -11498,7 +11516,8 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
-/* Prepares iteration n: weights, and rows that they or the caller have changed. */
+/* Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back, counts the
+   iterations since the wishes have faded. half: the last one of the first half. Errors stay in s->error. */
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
     gproj_system *s = loop->system;
     memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
@@ -11824,7 +11843,7 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     }
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     factored = gproji_factor_matrix(s, loop->iteration.epsilon, curved, 0, NULL);
-    loop->iteration.attempts++;
+    loop->iteration.factorisations++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
     /* 2. Steps with the same factor, until G dx = -phi: each time phi becomes the model's remainder of a constraint,
@@ -11993,7 +12012,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     double shift = curved ? loop->shift : 0;
     gproji_pass_over(s, 0, gproji_save_task);
-    for (loop->iteration.attempts = 0; loop->iteration.attempts < GPROJI_NEAREST_ATTEMPTS + 4;) {
+    for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_NEAREST_ATTEMPTS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
             loop->minimum = curved && shift <= gproji_nearest_flat;
@@ -12008,7 +12027,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_lap(loop, GPROJ_PHASE_SOLVE);
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
-        if (curved && loop->iteration.attempts == GPROJI_NEAREST_ATTEMPTS) {
+        if (curved && loop->iteration.factorisations == GPROJI_NEAREST_ATTEMPTS) {
             loop->shift = shift;
             curved = false;
             shift = 0;
@@ -12461,8 +12480,9 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), where constraints have the weight 1 and nothing else acts; bounds act if they
-   touch their limit. Returns the residual. */
+/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do if they
+   touch their limit, and so do the corners that a smooth solve before has woken. Leaves weights and active rows so. Returns
+   the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -12560,7 +12580,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_variables(uint64_t hash, const gproj_system
     return gproji_hash_integers(hash, s->blocks.first, (size_t)s->variable_count);
 }
 
-/* Hashes a group: name, kind, rows with the variables of their terms, without the numbers that a state has. */
+/* Hashes a group, to tell whether a state fits a form: name, kind, rows with the variables of their terms, but no
+   coefficients, constants and weights, which a state brings. */
 GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g) {
     uint64_t terms = 0;
     uint32_t t;
@@ -13075,7 +13096,7 @@ GPROJI_INTERNAL gproj_code gproji_check_data(const gproj_mesh_data *data, gproj_
     if (!data) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: there are none");
     least = 3 * (data->position ? sizeof(double) : sizeof(float));
     if ((data->position != NULL) == (data->float_position != NULL))
-        wrong = "either position or float_position is needed";
+        wrong = "one of position and float_position is needed, and not both";
     else if (data->position_stride && data->position_stride < least)
         wrong = "position_stride is less than three numbers have";
     else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
@@ -13866,7 +13887,8 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
     return size - i == 3 && !memcmp(word + i, "OFF", 3);
 }
 
-/* Goes to the next word anywhere; stops if the text ends after `count` elements. */
+/* Goes to the next word, over ends of lines; false after an error. A text that ends is one: after `count` of `promised`
+   elements, the noun. */
 GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64_t promised, const char *noun) {
     if (!reader->code && !gproji_next_word_anywhere(reader))
         gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "the text ends after %l of %l %s; it seems to be cut off",
@@ -19091,8 +19113,9 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    Based on Tang et al. (2014), sections 3.1 to 3.4.
 
    A form has internal units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the variables
-   3i..3i+2; others, such as face normals, come behind when a builder needs them. A group whose rows change between
-   iterations has a gproji_part with all that the refresh needs. Parts never move: the system points to them. */
+   3i..3i+2; others, such as face normals, come behind when a builder needs them. Each group of a builder has a
+   gproji_part: a rule, which says how unknowns start, how rows are refreshed and what a state keeps, and what that needs.
+   Solves, drags and states go through the parts, the last one added first. Parts never move: the system points to them. */
 
 typedef struct gproji_part gproji_part;
 
@@ -19115,7 +19138,8 @@ typedef struct gproji_acts {
     gproj_refresh refresh; /* linearises the rows at x before each iteration; user: the part */
     /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. */
     void (*start)(gproji_part *part);
-    /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps. */
+    /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of smooth
+       solves with planar faces. */
     void (*settle)(const gproji_part *part, double *x, int32_t from, int32_t to);
     /* Passes what a saved state keeps besides rows and variables. */
     void (*pass)(gproji_part *part, gproji_stream *stream, gproji_passing passing);
@@ -19399,7 +19423,8 @@ GPROJI_INTERNAL void *gproji_part_take(gproji_part *part, int64_t count, size_t 
     return block;
 }
 
-/* Adds unknowns of the part, all 0; data: the first one. NULL after an error. */
+/* Adds unknowns of the part, all 0, one after the other; part->data becomes the address returned, of the first one's
+   number. NULL after an error. */
 GPROJI_INTERNAL int32_t *gproji_part_unknowns(gproji_part *part, int32_t count) {
     int32_t *first = (int32_t *)gproji_part_take(part, 1, sizeof *first);
     if (!first) return NULL;
@@ -19452,6 +19477,11 @@ GPROJI_INTERNAL gproji_part *gproji_own_part(const gproj_form *form, gproji_own 
 GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
     const gproji_part *part = gproji_own_part(form, own);
     return part ? part->group : -1;
+}
+
+/* May a solve, a drag or a state change the form now? */
+GPROJI_INTERNAL bool gproji_form_is_open(gproj_form *form) {
+    return gproji_form_ready(form) && gproji_system_is_open(form->system);
 }
 
 /* Has the group a weight, in some iteration? */
@@ -19559,9 +19589,13 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    dense, stream, system, loop, mesh, curve, surface, measure, form.
 
    Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
-   for equations phi = 0 that are at most quadratic; others a refresh beside the builder linearises at x before each
-   iteration, to phi(x) + grad phi'(x' - x) = 0. Most are scaled so that phi is about a length in internal units, which
-   makes weights comparable. The variables in a row's terms never change; a refresh sets numbers only. */
+   for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each iteration, to
+   phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a length in internal units, which
+   makes weights comparable. The variables in a row's terms never change; a refresh sets numbers only.
+
+   To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as that
+   of gproj_add_midsphere: (1) start values of its unknowns, if it has any, at the system's x; (2) a refresh, if it is not
+   quadratic; (3) a rule with these; (4) the builder: a part, its unknowns, its group, its rows. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
@@ -19718,9 +19752,9 @@ static const gproji_rule gproji_planarity_rule = {"planarity",     GPROJ_CONSTRA
 static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
                                                          GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_normal_acts};
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). The
-   part's group has such rows only, and two lists of terms for all, by places among row variables: n; n and v_i by
-   pairs, then v_j. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). All rows
+   of the group share two lists of terms, which name local variables: 0..2 are n in the first; n_x, v_ix, n_y, v_iy, n_z,
+   v_iz, v_jx, v_jy, v_jz are 0..8 in the second. n starts by form->work.area, see gproji_update_areas. */
 GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
@@ -20173,6 +20207,8 @@ GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t gro
     }
 }
 
+/* Fills in the rows with tangents at the present normals of the vertices. part->vertex: the vertex of each difference, which
+   has two rows. */
 GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group,
                                                const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -21348,28 +21384,45 @@ GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, 
     return true;
 }
 
-GPROJI_INTERNAL void gproji_start_unknowns(gproji_part *part) {
-    gproj_form *form = part->form;
+/* Gives a block of unknowns their start values. The callback must not change the form: it is as during a solve. */
+GPROJI_INTERNAL void gproji_start_block(gproj_form *form, int32_t block) {
+    gproji_unknowns u = form->unknowns.block[block];
     double *x = gproj_system_values(form->system), offset, factor;
-    int32_t b, i;
-    for (b = 0; b < form->unknowns.count; ++b) {
-        const gproji_unknowns *u = &form->unknowns.block[b];
-        if (u->part != part) continue;
-        if (u->start) u->start(u->user, form->mesh, u->first, u->count, u->value);
-        for (i = 0; i < u->count; ++i) {
-            double start = u->value[i];
-            gproji_find_unit(form, u->first + i, &offset, &factor);
-            if (fabs(start) <= GPROJI_COORDINATE_MAX)
-                x[u->first + i] = (start - offset) / factor;
-            else
-                gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, u->first + i,
-                            "%s: the start value of unknown %d is not finite, or beyond 1e70", part->rule->name,
-                            u->first + i);
-        }
+    int32_t i;
+    if (u.start) {
+        bool solving = gproji_hold(form->system, true);
+        u.start(u.user, form->mesh, u.first, u.count, u.value);
+        gproji_hold(form->system, solving);
+    }
+    for (i = 0; i < u.count && gproji_form_ready(form); ++i) {
+        double start = u.value[i];
+        gproji_find_unit(form, u.first + i, &offset, &factor);
+        start = (start - offset) / factor;
+        if (fabs(u.value[i]) <= GPROJI_COORDINATE_MAX && gproji_is_finite(start))
+            x[u.first + i] = start;
+        else
+            gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, u.first + i,
+                        "%s: the start value of unknown %d is not finite, or beyond 1e70", u.part->rule->name,
+                        u.first + i);
     }
 }
 
-static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, NULL};
+GPROJI_INTERNAL void gproji_start_unknowns(gproji_part *part) {
+    int32_t b;
+    for (b = 0; b < part->form->unknowns.count; ++b)
+        if (part->form->unknowns.block[b].part == part) gproji_start_block(part->form, b);
+}
+
+GPROJI_INTERNAL void gproji_pass_unknowns(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
+    const gproj_form *form = part->form;
+    int32_t b;
+    (void)passing;
+    for (b = 0; b < form->unknowns.count; ++b)
+        if (form->unknowns.block[b].part == part)
+            gproji_pass_doubles(stream, form->unknowns.block[b].value, (size_t)form->unknowns.block[b].count);
+}
+
+static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, gproji_pass_unknowns};
 static const gproji_rule gproji_rows_rule = {"rows",          GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
                                              GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_rows_acts};
 
@@ -21381,8 +21434,17 @@ typedef struct gproji_own_rule {
 
 GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind kind, gproj_place place,
                                  double weight) {
-    gproji_part *part = gproji_new_part(form, &gproji_rows_rule, 0);
-    gproji_own_rule *own = (gproji_own_rule *)gproji_part_take(part, 1, sizeof *own);
+    gproji_part *part;
+    gproji_own_rule *own;
+    if (!gproji_form_ready(form)) return -1;
+    if (kind < GPROJ_CONSTRAINT || kind > GPROJ_BOUND || place < GPROJ_PLACE_NONE || place > GPROJ_PLACE_FACE) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "rows: kind %d must be a gproj_kind, and place %d none, vertex, edge or face", (int32_t)kind,
+                    (int32_t)place);
+        return -1;
+    }
+    part = gproji_new_part(form, &gproji_rows_rule, 0);
+    own = (gproji_own_rule *)gproji_part_take(part, 1, sizeof *own);
     if (!own) return -1;
     own->rule = gproji_rows_rule;
     own->rule.kind = kind, own->rule.place = place;
@@ -21397,7 +21459,7 @@ GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind 
 /* The part of a group of gproj_add_rows; NULL after an error. */
 GPROJI_INTERNAL gproji_part *gproji_callers_part(gproj_form *form, int32_t group) {
     gproji_part *part;
-    if (!gproji_form_ready(form)) return NULL;
+    if (!gproji_form_is_open(form)) return NULL;
     part = group < 0 ? NULL : gproji_part_of(form, group);
     if (part && part->rule->acts == &gproji_rows_acts) return part;
     gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
@@ -21434,8 +21496,7 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
     }
     memcpy(u->value, values, (size_t)count * sizeof *values);
     u->part = part, u->count = count, u->unit = unit, u->start = start, u->user = user;
-    form->unknowns.count++;
-    gproji_start_unknowns(part);
+    gproji_start_block(form, form->unknowns.count++);
     return gproji_built(form, u->first);
 }
 
@@ -21455,6 +21516,9 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
                                "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
                                (int64_t)first + i);
+    }
+    for (i = 0; i < count; ++i) {
+        gproji_find_unit(form, first + i, &offset, &factor);
         values[i] = offset + factor * x[first + i];
     }
     return GPROJ_OK;
@@ -21473,6 +21537,12 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     if (count < 0 || (count > 0 && !terms)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group, "%s: a row of %d terms, or no list",
                     part->rule->name, count);
+        return -1;
+    }
+    if (element < -1 || element >= gproji_max(gproji_element_count(form->mesh, part->rule->place), element == -1)) {
+        gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
+                    "%s: there is no %s %d, and -1 is none", part->rule->name, gproji_place_word(part->rule->place),
+                    element);
         return -1;
     }
     inside = (gproj_term *)gproji_take(&form->own, room, sizeof *inside);
@@ -21505,6 +21575,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
 
 GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
                                           gproj_error *error) {
+    gproj_place place;
     int32_t groups;
     gproji_error_clear(error);
     if (!form || !per_element)
@@ -21515,8 +21586,15 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
     if (group < 0 || group >= groups)
         return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
                            "residuals: there is no group %d (the form has %d)", group, groups);
-    gproji_worst_by_element(form->system, group,
-                            gproji_element_count(form->mesh, gproji_group_at(form->system, group)->place), per_element);
+    place = gproji_group_at(form->system, group)->place;
+    if (place != GPROJ_PLACE_VERTEX && place != GPROJ_PLACE_EDGE && place != GPROJ_PLACE_FACE)
+        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                           "residuals: the rows of group %d belong to the whole mesh, see gproj_form_group_info",
+                           group);
+    if (!gproji_is_evaluated(form->system))
+        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "residuals: the form has not been solved since something was added");
+    gproji_worst_by_element(form->system, group, gproji_element_count(form->mesh, place), per_element);
     return GPROJ_OK;
 }
 
@@ -21955,7 +22033,8 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
     return gproji_add_sign(form, &gproji_tension_rule, -1, count, edges, weight);
 }
 
-/* The terms s y l of an edge's force: l = u'(v_i - v_j) with u along the edge, filled in by a refresh. */
+/* The six terms of an edge's axial force w l, w the variable of the density, l = u'(v_i - v_j), u along the edge: with
+   coefficients 0, which gproji_refresh_force_terms fills in. */
 GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge, gproj_term *term) {
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
     int32_t k;
@@ -23272,7 +23351,7 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     int32_t i, r;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        for (r = 0; g->role != GPROJI_GUARD && g->schedule.weight > 0 && r < g->row_count; ++r) {
+        for (r = 0; g->role < GPROJI_GUARD && g->schedule.weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             if (!(row->weight > 0)) continue;
             /* A bound holds the mesh if a mesh that has shrunk to the origin violates it. */
@@ -23683,12 +23762,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     return solve->loop.result;
 }
 
-/* May a solve, a drag or a state change the form now? */
-GPROJI_INTERNAL bool gproji_form_is_open(gproj_form *form) {
-    return gproji_form_ready(form) && gproji_system_is_open(form->system);
-}
-
-/* One attempt: a solve at once, after `earlier` iterations of other attempts. */
+/* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth steps
+   begin. */
 GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier, double stiffness,
                                             const gproj_solve_options *options) {
     gproj_result result;
@@ -24636,7 +24711,13 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         result = gproji_failed_result(gproj_form_error(form));
     } else {
         result = form->solve.loop.result;
-        if (!form->solve.finished) result.outcome = GPROJ_CANCELLED;
+        if (!form->solve.finished) {
+            result.outcome = GPROJ_CANCELLED;
+            gproji_format(
+                result.message, sizeof result.message,
+                "cancelled: the release was stopped after %d iterations, and the mesh is as the last one left it",
+                result.iterations);
+        }
         form->solve.finished = false;
         gproji_schedule_release(drag, false);
     }

@@ -461,7 +461,7 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     gprojt_case *c = (gprojt_case *)user;
     int what = gprojt_byte(c);
     GPROJT_MUST(iteration->residual >= 0 && iteration->step >= 0 && iteration->step < HUGE_VAL);
-    GPROJT_MUST(iteration->length > 0 && iteration->length <= 2 && iteration->attempts >= 1);
+    GPROJT_MUST(iteration->length > 0 && iteration->length <= 2 && iteration->factorisations >= 1);
     if (what < 16 && c->asks) gprojt_schedule_of_bytes(c, c->ask[what % c->asks].group);
     if (what == 16) return false;
     return gproj_system_error(s)->code == GPROJ_OK;

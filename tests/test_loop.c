@@ -74,7 +74,7 @@ GPROJT_TEST(sphere_and_planes) {
     GPROJT_NEAR(gproj_system_values(s)[2], 1, 1e-12);
     GPROJT_NEAR(gproj_system_values(s)[0] + gproj_system_values(s)[1], 2, 1e-12);
     gprojt_check_quadratic(&watch);
-    GPROJT_CHECK(watch.seen[0].attempts == 1 && watch.seen[0].length == 1 && watch.seen[0].epsilon == 1e-3);
+    GPROJT_CHECK(watch.seen[0].factorisations == 1 && watch.seen[0].length == 1 && watch.seen[0].epsilon == 1e-3);
     GPROJT_CHECK(watch.seen[watch.count - 1].epsilon == 1e-5); /* it follows the residual */
     GPROJT_CHECK(watch.seen[watch.count - 1].residual == result.residual && watch.seen[0].energy == 0);
     gproj_system_destroy(s);
@@ -436,14 +436,14 @@ GPROJT_TEST(steps_that_raise_the_merit_are_damped) {
     GPROJT_CHECK(result.outcome == GPROJ_STALLED);
     GPROJT_CHECK(fabs(gproj_system_values(s)[0]) < 0.1);
     for (n = 1; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].merit <= watch.seen[n - 1].merit);
-    GPROJT_CHECK(watch.count == 0 || watch.seen[0].attempts > 1);
+    GPROJT_CHECK(watch.count == 0 || watch.seen[0].factorisations > 1);
     gproj_system_destroy(s);
     s = gprojt_square_plus(0.1, 1);
     options = gprojt_watched(&watch);
     options.skip_damping = true;
     result = gproj_system_solve(s, 6, &options);
     GPROJT_CHECK(watch.seen[0].merit > 2 && result.damped == 0);
-    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].attempts == 1 && watch.seen[n].length == 1);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].factorisations == 1 && watch.seen[n].length == 1);
     gproj_system_destroy(s);
 }
 
@@ -493,7 +493,7 @@ GPROJT_TEST(steps_are_not_lengthened_without_need) {
     memset(&watch, 0, sizeof watch);
     options = gprojt_watched(&watch);
     GPROJT_CHECK(gproj_system_solve(s, 20, &options).outcome == GPROJ_CONVERGED);
-    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].length == 1 && watch.seen[n].attempts == 1);
+    for (n = 0; n < watch.count; ++n) GPROJT_CHECK(watch.seen[n].length == 1 && watch.seen[n].factorisations == 1);
     gproj_system_destroy(s);
 }
 
@@ -519,7 +519,7 @@ GPROJT_TEST(wild_steps_are_shortened_to_the_smallest_merit) {
         options.epsilon = 1e-5;
         result = gproj_system_solve(s, 30, &options);
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped >= 1);
-        GPROJT_CHECK(watch.seen[0].length < 1 && watch.seen[0].attempts == 1);
+        GPROJT_CHECK(watch.seen[0].length < 1 && watch.seen[0].factorisations == 1);
         reached = x + watch.seen[0].length * (full - x);
         GPROJT_NEAR(fabs(reached), 1, 1e-6);
         GPROJT_NEAR(watch.x[0], reached, 1e-6);
@@ -544,7 +544,7 @@ GPROJT_TEST(a_larger_epsilon_where_no_length_is_good) {
     gproj_system_set_schedule(s, 1, gprojt_schedule(1e-4, 1, 3));
     result = gproj_system_solve(s, 40, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped >= 1);
-    GPROJT_CHECK(watch.seen[0].attempts > 1 && watch.seen[0].epsilon > 9 * gproji_epsilon_max);
+    GPROJT_CHECK(watch.seen[0].factorisations > 1 && watch.seen[0].epsilon > 9 * gproji_epsilon_max);
     for (n = 0; n < watch.count; ++n) {
         double before = n ? watch.seen[n - 1].merit : 1;
         GPROJT_CHECK(watch.seen[n].merit <= before || before < 1e-15);

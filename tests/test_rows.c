@@ -148,6 +148,43 @@ GPROJT_TEST(unknowns_start_anew) {
     free(end);
 }
 
+typedef struct gprojt_meddler {
+    gproj_form *form;
+    int32_t group, what;
+    bool on;
+} gprojt_meddler;
+
+static void gprojt_meddle(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values) {
+    const gprojt_meddler *m = (const gprojt_meddler *)user;
+    gproj_term z = gprojt_term(2, -1, 1);
+    (void)mesh, (void)first, (void)count;
+    if (!m->on) return;
+    if (m->what == 0) GPROJT_CHECK(gproj_solve(m->form, 3, NULL).outcome == GPROJ_FAILED);
+    if (m->what == 1)
+        GPROJT_CHECK(gproj_form_add_unknowns(m->form, m->group, GPROJ_UNIT_LENGTH, 1, values, NULL, NULL) == -1);
+    if (m->what == 2) GPROJT_CHECK(gproj_form_add_row(m->form, m->group, 1, &z, 0, 0) == -1);
+}
+
+/* A callback that changes the form, or solves it, is refused. */
+GPROJT_TEST(meddling_start_values) {
+    static const double none[3] = {0, 0, 0}, one = 1;
+    int32_t what;
+    for (what = 0; what < 3; ++what) {
+        gproj_mesh *mesh = gprojt_cap(3, 1, none);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gprojt_meddler m = {form, 0, what, false};
+        double worst[64];
+        m.group = gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+        gproj_form_add_unknowns(form, m.group, GPROJ_UNIT_LENGTH, 1, &one, gprojt_meddle, &m);
+        GPROJT_CHECK(gproj_form_residuals(form, m.group, worst, NULL) == GPROJ_ERROR_STATE);
+        m.on = true;
+        GPROJT_CHECK(gproj_solve(form, 3, NULL).outcome == GPROJ_FAILED);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_STATE);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* States keep unknowns, and drags hold rows of one's own. */
 GPROJT_TEST(states_and_drags_know_unknowns) {
     static const double none[3] = {0, 0, 0};
@@ -209,6 +246,14 @@ GPROJT_TEST(residuals_by_element) {
     GPROJT_CHECK(gproj_form_residuals(form, 99, face, NULL) == GPROJ_ERROR_INDEX);
     GPROJT_CHECK(gproj_form_residuals(form, -1, face, NULL) == GPROJ_ERROR_INDEX);
     GPROJT_CHECK(gproj_form_residuals(NULL, 0, face, NULL) == GPROJ_ERROR_ARGUMENT);
+    {
+        gproj_error error;
+        double kept = ball[0];
+        group = gproj_add_rows(form, "of all", GPROJ_WISH, GPROJ_PLACE_NONE, 1);
+        GPROJT_CHECK(gproj_form_residuals(form, planar, face, &error) == GPROJ_ERROR_STATE); /* something was added */
+        GPROJT_CHECK(gproj_form_residuals(form, group, face, &error) == GPROJ_ERROR_ARGUMENT && error.message[0]);
+        GPROJT_CHECK(gproj_form_get_unknowns(form, at + 3, 2, ball, &error) == GPROJ_ERROR_INDEX && ball[0] == kept);
+    }
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -219,18 +264,21 @@ GPROJT_TEST(residuals_by_element) {
 /* Each wrong call says what is wrong. */
 GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
-    static const char *const words[] = {"neither", "neither", "neither", "none of", "none of", "3 each", "1 or more",
-                                        "1 or more", "beyond 1e70", "1e50", "finite"};
+    static const char *const words[] = {"neither", "neither",    "neither",    "none of",     "none of",
+                                        "3 each",  "1 or more",  "1 or more",  "beyond 1e70", "1e50",
+                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither"};
     int32_t i;
-    for (i = 0; i < 11; ++i) {
+    for (i = 0; i < 15; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t planar = gproj_add_planarity(form, 1), got;
-        int32_t group = gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, i == 9 ? -1 : 1);
+        int32_t group = gproj_add_rows(form, "mine", i == 11 ? (gproj_kind)7 : GPROJ_CONSTRAINT,
+                                       i == 12 ? GPROJ_PLACE_ROW : GPROJ_PLACE_VERTEX, i == 9 ? -1 : 1);
         gproj_term term = gprojt_term(0, -1, i == 10 ? INFINITY : 1);
         if (i == 0) term.i = -1;
         if (i == 1) term.i = 3 * mesh->vertex_count; /* a normal: the library's */
         if (i == 2) term.j = INT32_MAX;
+        if (i == 14) term.j = -2;
         got = i < 3    ? gproj_form_add_row(form, group, 1, &term, 0, 0)
               : i == 3 ? gproj_form_add_row(form, planar, 1, &term, 0, 0)
               : i == 4 ? gproj_form_add_unknowns(form, 77, GPROJ_UNIT_NUMBER, 1, values, NULL, NULL)
@@ -238,9 +286,11 @@ GPROJT_TEST(wrong_rows_are_refused) {
               : i == 6 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 0, values, NULL, NULL)
               : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
               : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
-              : i == 9 ? group
-                       : gproj_form_add_row(form, group, 1, &term, 0, 0);
-        if (!strstr(gproj_form_error(form)->message, words[i])) printf("  %d: %s\n", i, gproj_form_error(form)->message);
+              : i == 9 || i == 11 || i == 12 ? group
+              : i == 13                      ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
+                                             : gproj_form_add_row(form, group, 1, &term, 0, 0);
+        if (!strstr(gproj_form_error(form)->message, words[i]))
+            printf("  %d: %s\n", i, gproj_form_error(form)->message);
         GPROJT_CHECK(got == -1 && strstr(gproj_form_error(form)->message, words[i]) != NULL);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -314,6 +364,7 @@ int main(void) {
     GPROJT_RUN(a_ball_in_any_units);
     GPROJT_RUN(numbers_are_in_the_units_of_the_mesh);
     GPROJT_RUN(unknowns_start_anew);
+    GPROJT_RUN(meddling_start_values);
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
     GPROJT_RUN(wrong_rows_are_refused);

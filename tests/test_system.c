@@ -600,7 +600,7 @@ static void gprojt_check_step_bound(gprojt_twin *t, double epsilon, double bound
         return;
     }
     gprojt_twin_stand(t, x);
-    GPROJT_CHECK(iteration.number == 1 && iteration.attempts == 1 && iteration.length == 1 &&
+    GPROJT_CHECK(iteration.number == 1 && iteration.factorisations == 1 && iteration.length == 1 &&
                  iteration.epsilon == epsilon);
     GPROJT_NEAR(iteration.step, largest, bound * fmax(largest, 1e-6));
     GPROJT_NEAR(iteration.residual, t->residual, 1e-12 * (1 + t->residual));

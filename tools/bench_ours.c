@@ -111,9 +111,9 @@ static bool bench_after_iteration(void *user, gproj_system *system, const gproj_
     bench_form *f = (bench_form *)user;
     bench_step step;
     int p;
-    step.once = iteration->attempts == 1;
+    step.once = iteration->factorisations == 1;
     if (!step.once && f->task != BENCH_DEFAULT) {
-        fprintf(stderr, "bench: %d factorisations in one iteration\n", (int)iteration->attempts);
+        fprintf(stderr, "bench: %d factorisations in one iteration\n", (int)iteration->factorisations);
         return false;
     }
     for (p = 0; p < BENCH_PHASES; ++p) step.seconds[p] = iteration->seconds[phase[p]];

@@ -288,7 +288,7 @@ static void gprojx_report_iteration(gprojx_json *j, const gprojx_report *report,
     gprojx_json_number(j, "step", iteration->step);
     if (report->nearest) gprojx_json_number(j, "optimality", iteration->optimality);
     gprojx_json_number(j, "epsilon", iteration->epsilon);
-    gprojx_json_integer(j, "attempts", iteration->attempts);
+    gprojx_json_integer(j, "factorisations", iteration->factorisations);
     gprojx_json_open(j, "groups", '[');
     for (i = 0; i < record->group_count; ++i) {
         gprojx_json_open_row(j, NULL);
