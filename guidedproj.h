@@ -568,8 +568,8 @@ typedef enum gproj_kind {
     GPROJ_KIND_FORCE_INT = 0x7fffffff
 } gproj_kind;
 
-/* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. Make it by the functions below; decay may
-   be set afterwards. Needs 0 <= weight <= 1e50, and unless the weight is 0 also 0 < decay <= 1, and last >= 1 or
+/* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. Make it by the functions below; decay
+   may be set afterwards. Needs 0 <= weight <= 1e50, and unless the weight is 0 also 0 < decay <= 1, and last >= 1 or
    GPROJ_LAST_GUIDING. */
 typedef struct gproj_schedule {
     double weight;
@@ -1264,9 +1264,9 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
-/* The form keeps a pointer to the mesh, which must outlive it: destroy the mesh after the form. A NULL mesh gives a form whose error says so; so do
-   positions that are not finite or beyond 1e70, here, at each solve, and as targets, and a mean edge length between 0 and
-   1e-305. */
+/* The form keeps a pointer to the mesh, which must outlive it: destroy the mesh after the form. A NULL mesh gives a
+   form whose error says so; so do positions that are not finite or beyond 1e70, here, at each solve, and as targets,
+   and a mean edge length between 0 and 1e-305. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -1318,9 +1318,9 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 /* These edges have one common, unknown length L, a variable: |v_i - v_j|^2 / 2 - L^2 / 2 = 0. For several groups of
    edges, each with its own length, call it several times. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight);
-/* The midpoints m of these edges (NULL: the first `count` ones) are on one unknown sphere: (m'm - 2 c'm + s) / (2 R) = 0,
-   the centre c and s = c'c - r^2 being variables that start at the least-squares sphere, R the radius of that sphere when this is called, at least
-   0.001 mean edge lengths. */
+/* The midpoints m of these edges (NULL: the first `count` ones) are on one unknown sphere: (m'm - 2 c'm + s) / (2 R) =
+   0, the centre c and s = c'c - r^2 being variables that start at the least-squares sphere, R the radius of that sphere
+   when this is called, at least 0.001 mean edge lengths. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight);
 /* These vertices are on one unknown plane: n'(v_i - m) = d with n'n = 1, n and d variables that start at the
    least-squares plane, m the mean of the originals. Nothing for 3 vertices and fewer. */
@@ -1398,9 +1398,9 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
 /* -- constraints of your own -- */
 
-/* Adds an empty group for rows of your own; returns its number, or -1. Rows are quadratic in vertices and in unknowns of
-   your own, all in the mesh's units: see gproj_form_add_row. What changes from iteration to iteration needs a refresh:
-   use the system, see gproj_form_system. */
+/* Adds an empty group for rows of your own; returns its number, or -1. Rows are quadratic in vertices and in unknowns
+   of your own, all in the mesh's units: see gproj_form_add_row. What changes from iteration to iteration needs a
+   refresh: use the system, see gproj_form_system. */
 GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind kind, gproj_place place, double weight);
 
 typedef enum gproj_unit {
@@ -1416,9 +1416,9 @@ typedef enum gproj_unit {
    and drag. Must not change the form. */
 typedef void (*gproj_start)(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values);
 
-/* Adds `count` unknowns to a group of gproj_add_rows; returns the first one's number, which terms name, or -1. `values`:
-   where they start at each solve and drag, in the mesh's units; `start`, with `user`, may give better ones then, or is
-   NULL. States keep them like the library's. */
+/* Adds `count` unknowns to a group of gproj_add_rows; returns the first one's number, which terms name, or -1.
+   `values`: where they start at each solve and drag, in the mesh's units; `start`, with `user`, may give better ones
+   then, or is NULL. States keep them like the library's. */
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user);
 /* Reads such unknowns in the mesh's units. `error` may be NULL; a refused call changes nothing. */
@@ -1426,15 +1426,17 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
                                              gproj_error *error);
 /* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
    In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Scale phi to
-   be about a length, so that residuals and weights compare with those of other constraints: divide |v - p|^2 - r^2 by
-   2 r; if r is unknown, by twice its start value (examples/custom_constraint.c). `element`: the vertex, edge or face of the row, or -1. */
+   be about a length, so that residuals and weights compare with those of other constraints: divide |v - p|^2 - r^2 by 2
+   r; if r is unknown, by twice its start value (examples/custom_constraint.c). `element`: the vertex, edge or face of
+   the row, or -1. */
 GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
                                      double constant, int32_t element);
 /* -- groups: residuals and weights -- */
 
-/* What each element of the group's place lacks after a solve, by its last evaluation: the largest |phi| of its rows, of bounds the violation, in
-   mean edge lengths; 0 without rows. Refuses groups whose place is none of vertex, edge and face, and forms that were not
-   solved. per_element: a number for each vertex, edge or face of the mesh; `error` may be NULL. */
+/* What each element of the group's place lacks after a solve, by its last evaluation: the largest |phi| of its rows, of
+   bounds the violation, in mean edge lengths; 0 without rows. Refuses groups whose place is none of vertex, edge and
+   face, and forms that were not solved. per_element: a number for each vertex, edge or face of the mesh; `error` may be
+   NULL. */
 GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
                                           gproj_error *error);
 
@@ -1455,9 +1457,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from the end of the first, or from the positions that you have set since. Positions are written
-   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. The system's values for
-   vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original" for
-   fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
+   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. The system's values
+   for vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original"
+   for fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
    closeness to the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error
    nothing is written.
 
@@ -1467,10 +1469,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
    constraints are met, on paths that differ a little.
 
-   With planar faces, or forces that carry, there is a guard as well (options: skip_guard): while the wishes guide and two
-   iterations longer, at least four, a face that is about to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts
-   on the steps only, not on residual and verdict. It helps; gproj_measure counts the faces that have turned all the
-   same.
+   With planar faces, or forces that carry, there is a guard as well (options: skip_guard): while the wishes guide and
+   two iterations longer, at least four, a face that is about to turn over gets a row that asks for 0.4 of its area. The
+   group "guard" has these rows; it acts on the steps only, not on residual and verdict. It helps; gproj_measure counts
+   the faces that have turned all the same.
 
    options->smooth (the command line's default) does more for meshes of any resolution:
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
@@ -1642,8 +1644,8 @@ typedef struct gproj_handles {
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
        anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
-       more than a mean edge length for it. For long drags. A move then costs an evaluation of all rows, and now and then
-       as much as gproj_drag_begin. 0 or INFINITY: never. */
+       more than a mean edge length for it. For long drags. A move then costs an evaluation of all rows, and now and
+       then as much as gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
     bool keep_wishes;      /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -1686,7 +1688,7 @@ GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
    (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
    iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
-/* Begins that release in frames, for programs that draw between iterations: gproj_solve_advance goes on with it, and moves are
+/* Begins that release in frames, for programs that draw between iterations: gproj_solve_advance goes on, and moves are
    refused from now on. gproj_drag_end takes the iterations that are left and gives the verdict; the bytes are those of
    gproj_drag_end alone. gproj_drag_cancel goes back at any time.
 
@@ -1704,11 +1706,12 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag);
 /* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
    during the drag, or the form has met an error, the mesh and all variables are put back. */
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag);
-/* Finds the vertices of a handle with reach: those nearer to `vertex` than `reach` (in the mesh's units, on the shortest
-   path of edges on the mesh as it is), itself first, in the order of their distances d, with the weights (1 - d^2 / reach^2)^2. One handle
-   with this list takes its neighbourhood along where a vertex alone makes a spike; give it the position of `vertex`. `vertices` and `weights` have room for
-   vertex_count numbers each. Returns how many were found, 1 with a reach of 0; 0: there is no such vertex, or the form
-   has an error. Work: a pass over all vertices, and for each one found a pass over the border of those found. */
+/* Finds the vertices of a handle with reach: those nearer to `vertex` than `reach` (in the mesh's units, on the
+   shortest path of edges on the mesh as it is), itself first, in the order of their distances d, with the weights (1 -
+   d^2 / reach^2)^2. One handle with this list takes its neighbourhood along where a vertex alone makes a spike; give it
+   the position of `vertex`. `vertices` and `weights` have room for vertex_count numbers each. Returns how many were
+   found, 1 with a reach of 0; 0: there is no such vertex, or the form has an error. Work: a pass over all vertices, and
+   for each one found a pass over the border of those found. */
 GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reach, int32_t *vertices, double *weights);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1727,9 +1730,9 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
        ...
        gproj_state_restore(form, undo, size, NULL);
 
-   The bytes have the same meaning on all machines; they may be written to a file. A form is the same if its numbers are,
-   to the last digit: where products are contracted (-ffp-contract=fast, -std=gnu17 with FMA) or registers are longer
-   (x87), states of other machines may be refused. */
+   The bytes have the same meaning on all machines; they may be written to a file. A form is the same if its numbers
+   are, to the last digit: where products are contracted (-ffp-contract=fast, -std=gnu17 with FMA) or registers are
+   longer (x87), states of other machines may be refused. */
 
 /* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
    error of the form. */
@@ -7502,9 +7505,9 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 /* ============================================================================================================
    >>stream   Numbers to and from a block of bytes, and hashes of numbers. Uses platform.
 
-   One description of a format counts, writes, checks and reads it, by the stream's mode: a description passes each value
-   by address, and only GPROJI_READ writes to it. Integers are little-endian; a double is its 64 bits, but coefficients,
-   constants and weights, which mostly are small numbers of eighths, have one byte for these. */
+   One description of a format counts, writes, checks and reads it, by the stream's mode: a description passes each
+   value by address, and only GPROJI_READ writes to it. Integers are little-endian; a double is its 64 bits, but
+   coefficients, constants and weights, which mostly are small numbers of eighths, have one byte for these. */
 
 enum {
     GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to its negative, have one byte */
@@ -7715,7 +7718,8 @@ typedef struct gproji_tally {
     int32_t row;    /* the first that has it; -1: there are no rows */
 } gproji_tally;
 
-static const double gproji_guard_slack = 0.2; /* steps may violate a guard's rows by so much */
+static const double gproji_weight_most = 1e50; /* a constant, not a literal, which x87 keeps with more digits */
+static const double gproji_guard_slack = 0.2;  /* steps may violate a guard's rows by so much */
 
 /* What a group's rows are to steps. Those from GPROJI_GUARD on are not in merit, residual and verdict. */
 typedef enum gproji_role {
@@ -8158,8 +8162,8 @@ GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) { return gproji
 GPROJ_API gproj_schedule gproj_guide(double weight) { return gproji_make_schedule(weight, GPROJ_LAST_GUIDING); }
 
 GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule s) {
-    return s.weight >= 0 && s.weight <= 1e50 && s.decay >= 0 && s.decay <= 1 && s.last >= GPROJ_LAST_GUIDING &&
-           (s.weight == 0 || (s.decay > 0 && s.last != 0));
+    return s.weight >= 0 && s.weight <= gproji_weight_most && s.decay >= 0 && s.decay <= 1 &&
+           s.last >= GPROJ_LAST_GUIDING && (s.weight == 0 || (s.decay > 0 && s.last != 0));
 }
 
 GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
@@ -8262,8 +8266,8 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     return GPROJ_OK;
 }
 
-/* Declares that the gradients of all rows so far sum to zero over each element with local unknowns, as n'(v_i - v_j) does
-   around a face: `zero_sum` in >>schur. */
+/* Declares that the gradients of all rows so far sum to zero over each element with local unknowns, as n'(v_i - v_j)
+   does around a face: `zero_sum` in >>schur. */
 GPROJI_INTERNAL void gproji_declare_zero_sum(gproj_system *s, int32_t group) {
     s->group[group].zero_sum = s->group[group].row_count;
 }
@@ -8559,7 +8563,7 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
     gproji_group *g;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
-    if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= 1e50))
+    if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= gproji_weight_most))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
                            "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
                            weight, row, group);
@@ -10618,38 +10622,39 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
    grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
-   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx. Products
-   are small if dx is, so rounding of phi never makes a short step look like one that raises M. A step that would raise it is
-   shortened to the t of smallest merit; if no t lowers it, the step is found again with a larger eps, as in the method by
-   Levenberg (1944) and Marquardt (1963). If no eps helps, x is at a minimum; that is a verdict on the constraints only after
-   wishes have faded as scheduled, so iterations are left out until then. Near the end and without wishes, a step along which
-   the merit goes on falling beyond t = 1 is lengthened: at singular points Newton's steps are half as long as needed.
+   is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx.
+   Products are small if dx is, so rounding of phi never makes a short step look like one that raises M. A step that
+   would raise it is shortened to the t of smallest merit; if no t lowers it, the step is found again with a larger eps,
+   as in the method by Levenberg (1944) and Marquardt (1963). If no eps helps, x is at a minimum; that is a verdict on
+   the constraints only after wishes have faded as scheduled, so iterations are left out until then. Near the end and
+   without wishes, a step along which the merit goes on falling beyond t = 1 is lengthened: at singular points Newton's
+   steps are half as long as needed.
 
-   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, with a bound's row
-   counted only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and again
-   with those that it violates (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
+   With bounds the linearised problem is to make sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2 small, with a bound's row counted
+   only as far as phi + g'dx < 0. Newton's method for it is to find the step with a guess of the rows that act, and
+   again with those that it violates (Hintermueller, Ito, Kunisch: The primal-dual active set strategy as a semismooth
    Newton method, 2003). The first guess: rows violated at x, and rows that acted on the last step. The merit is then
    piecewise of degree 4 with a continuous slope.
 
-   Steps are measured by |dx|, or in a norm of the owner's. Rows of metric groups (in a form: differences of the displacement
-   along edges) add
+   Steps are measured by |dx|, or in a norm of the owner's. Rows of metric groups (in a form: differences of the
+   displacement along edges) add
        k^2 sum (w g'dx)^2,    k the stiffness
-   to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place, so
-   they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the agreement
-   of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or falls short. Once
-   it is small near a solution the metric rests and the last steps are Newton's. A metric that is a brake (in a form: changes
-   of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
+   to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
+   so they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the
+   agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or
+   falls short. Once it is small near a solution the metric rests and the last steps are Newton's. A metric that is a
+   brake (in a form: changes of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
-   An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these are,
-   while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The differentiation of
-   pseudo-inverses and nonlinear least squares problems whose variables separate, 1973). Full steps are good then that had
-   to be cut to a fifth without it, and their number hardly depends on how fine a mesh is.
+   An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
+   are, while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The
+   differentiation of pseudo-inverses and nonlinear least squares problems whose variables separate, 1973). Full steps
+   are good then that had to be cut to a fifth without it, and their number hardly depends on how fine a mesh is.
 
    The path from x to the constraints' set is curved, and a straight step leaves a narrow one at once. The error of the
-   linearised rows at the end of a step is known exactly, and the factor at hand turns it into a second-order correction for
-   the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
-   least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need 25
-   iterations without it need 9 (test_smooth).
+   linearised rows at the end of a step is known exactly, and the factor at hand turns it into a second-order correction
+   for the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
+   least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need
+   25 iterations without it need 9 (test_smooth).
 
    A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound,
    and is let go if no step is found with it: constraints come first, and the verdict tells the damage. */
@@ -10659,8 +10664,8 @@ static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding o
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by so much of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.1;
-/* A step that lowers the merit by less than this part of the linearised rows' promise is bent, by at most so much of the
-   square of the step's length. */
+/* A step that lowers the merit by less than this part of the linearised rows' promise is bent, by at most so much of
+   the square of the step's length. */
 static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 /* A step that lowers the merit to so much need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
@@ -10740,8 +10745,8 @@ typedef struct gproji_loop {
     bool minimum;      /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
-/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells the
-   variables. */
+/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
+   the variables. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     GPROJ_ASSERT(!g->common && !g->row[row].run);
@@ -10990,8 +10995,8 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     return gproji_fmin(tolerance, gproji_tolerance_most);
 }
 
-/* The largest noise, 4 roundings of sum_k |dphi/dx_k x_k|, among rows above the tolerance. Infinite if a row is above its own
-   noise, too: rounding does not explain it. */
+/* The largest noise, 4 roundings of sum_k |dphi/dx_k x_k|, among rows above the tolerance. Infinite if a row is above
+   its own noise, too: rounding does not explain it. */
 GPROJI_INTERNAL double gproji_noise_above(const gproji_loop *loop) {
     const gproj_system *s = loop->system;
     double largest = 0;
@@ -11019,8 +11024,8 @@ GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     gproji_evaluate(loop->system);
     loop->standing = gproji_take_standing(loop->system);
     residual = loop->standing.residual;
-    /* Large forces have large roundings, which max |x| does not tell. Only a residual between the automatic tolerance and
-       its upper limit costs a look at the rows. */
+    /* Large forces have large roundings, which max |x| does not tell. Only a residual between the automatic tolerance
+       and its upper limit costs a look at the rows. */
     if (loop->options.tolerance <= 0 && residual > loop->tolerance && residual <= gproji_noise_most) {
         double noise = gproji_noise_above(loop);
         if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
@@ -11075,7 +11080,8 @@ typedef struct gproji_course {
     const gproji_hinge *hinge;
 } gproji_course;
 
-/* M(t) along dx, for rows linearised at its beginning: phi + t h + t^2 q with h = grad phi'dx and q the products at dx. */
+/* M(t) along dx, for rows linearised at its beginning: phi + t h + t^2 q with h = grad phi'dx and q the products at
+   dx. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -11177,8 +11183,8 @@ GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
     if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
 }
 
-/* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is above
-   the merit without settling, which `course` knows, local unknowns stay as the step has made them. */
+/* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is
+   above the merit without settling, which `course` knows, local unknowns stay as the step has made them. */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit, plain;
@@ -11211,8 +11217,9 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     return sum;
 }
 
-/* Bends the full step, which has led to x and left `merit`: adds the factor's answer to the linearised rows' discrepancy
-   there. Returns the merit at the new x; afterwards phi of the rows no longer belongs to the step's beginning. */
+/* Bends the full step, which has led to x and left `merit`: adds the factor's answer to the linearised rows'
+   discrepancy there. Returns the merit at the new x; afterwards phi of the rows no longer belongs to the step's
+   beginning. */
 GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
     gproj_system *s = loop->system;
     double *straight = s->vector.gradient; /* free when the step is found */
@@ -11245,9 +11252,8 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
     return gproji_go(loop, 1, course);
 }
 
-/* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused, but
-   must lower it. 0: none. x is at the end of the full step, `none` the merit before. `bent`: a bend was
-   tried. */
+/* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused,
+   but must lower it. 0: none. x is at the end of the full step, `none` the merit before. `bent`: a bend was tried. */
 GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course, bool *bent) {
     gproj_system *s = loop->system;
     double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
@@ -11296,10 +11302,10 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     }
 }
 
-/* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again. A
-   row should act if the step would violate it by more than a part of the residual, in itself and linearised (the tangent of a
-   convex row alone would say so too early); a row that acts already goes on until it holds the step back. The guard looks at
-   the end of the step, in the first round, and keeps its rows. */
+/* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again.
+   A row should act if the step would violate it by more than a part of the residual, in itself and linearised (the
+   tangent of a convex row alone would say so too early); a row that acts already goes on until it holds the step back.
+   The guard looks at the end of the step, in the first round, and keeps its rows. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
@@ -11330,9 +11336,9 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
     return !(gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0));
 }
 
-/* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it, at x
-   or where the step began; each time these are more, so that steps are not analysed again and again. Returns whether there
-   was one. */
+/* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it,
+   at x or where the step began; each time these are more, so that steps are not analysed again and again. Returns
+   whether there was one. */
 GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     bool woken = false;
     int32_t i, r;
@@ -11353,8 +11359,9 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
-/* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is the
-   beginning of the step, and s->vector.saved afterwards too. Returns whether rows were compiled; there may be an error. */
+/* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is
+   the beginning of the step, and s->vector.saved afterwards too. Returns whether rows were compiled; there may be an
+   error. */
 GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
@@ -11408,8 +11415,8 @@ GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
     return good;
 }
 
-/* Sets the stiffness of steps, x being the beginning of the next one. Metric groups that come back by that are compiled, if
-   they are not, and linearised. */
+/* Sets the stiffness of steps, x being the beginning of the next one. Metric groups that come back by that are
+   compiled, if they are not, and linearised. */
 GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     gproj_system *s = loop->system;
     bool back = false;
@@ -11541,8 +11548,8 @@ GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
     return go_on;
 }
 
-/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether there
-   were any. */
+/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether
+   there were any. */
 GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
     if (!loop->system->changed) return false;
     gproji_set_weights(loop, gproji_max(1, loop->result.iterations));
@@ -11640,8 +11647,8 @@ GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
     return wish;
 }
 
-/* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad phi,
-   cancel there. */
+/* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad
+   phi, cancel there. */
 GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     double size = 0, sum = 0;
     int64_t l;
@@ -11830,8 +11837,8 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     bool factored;
     if (curved) follows = gproji_fmin(gproji_fmax(loop->standing.residual, gproji_nearest_epsilon), follows);
     loop->iteration.epsilon = sqrt(follows * follows + gproji_nearest_scale * gproji_nearest_scale * shift);
-    /* 1. phi + y in place of phi. Rows without a weight forget their multipliers, and so do bounds that do not act: these
-       multipliers fall to 0. */
+    /* 1. phi + y in place of phi. Rows without a weight forget their multipliers, and so do bounds that do not act:
+       these multipliers fall to 0. */
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         for (r = 0; r < g->row_count; ++r) {
@@ -12036,8 +12043,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by row. The least
-   over all y would be the norm of the gradient projected to the tangent space of the constraints. */
+/* The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by row. The
+   least over all y would be the norm of the gradient projected to the tangent space of the constraints. */
 GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
     double wishes = 0, left = 0;
     int64_t l;
@@ -12095,8 +12102,8 @@ GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_
             s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
     gproji_linearise(loop);
     if (!gproji_iterate(loop)) return false;
-    /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a symmetric
-       step cannot leave it. */
+    /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
+       symmetric step cannot leave it. */
     for (i = 0; n == guided && i < s->variable_count; ++i) {
         state = state * 1664525u + 1013904223u;
         s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
@@ -12233,8 +12240,8 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
 }
 
-/* Runs for `seconds` (< 0: to the end), at least one iteration. Returns whether the solve is at its end; the result says
-   how it stands. */
+/* Runs for `seconds` (< 0: to the end), at least one iteration. Returns whether the solve is at its end; the result
+   says how it stands. */
 GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
     gproj_system *s = loop->system;
     loop->time.frame = seconds;
@@ -12394,8 +12401,8 @@ GPROJI_INTERNAL void gproji_rest_safeguard(gproji_stream *stream, gproj_system *
     for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
 }
 
-/* Passes a group but for a safeguard's rows: during a solve all numbers; else neither those in rows that a refresh makes
-   anew, nor any in a group whose rows are set when a solve begins (`anew`). */
+/* Passes a group but for a safeguard's rows: during a solve all numbers; else neither those in rows that a refresh
+   makes anew, nor any in a group whose rows are set when a solve begins (`anew`). */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, int32_t group, bool anew,
                                        gproji_passing passing) {
     gproji_group *g = &s->group[group];
@@ -12480,9 +12487,9 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do if they
-   touch their limit, and so do the corners that a smooth solve before has woken. Leaves weights and active rows so. Returns
-   the residual. */
+/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do
+   if they touch their limit, and so do the corners that a smooth solve before has woken. Leaves weights and active rows
+   so. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -12514,8 +12521,8 @@ typedef struct gproji_tangent {
     int32_t sides; /* solved together: see gproji_begin_tangent */
 } gproji_tangent;
 
-/* Replaces the columns Q by (G'G + eps^2 D)^-1 eps^2 D Q, `rounds` times. base: moves by a step that takes the residual off,
-   too; or NULL. False: the matrix cannot be factored. */
+/* Replaces the columns Q by (G'G + eps^2 D)^-1 eps^2 D Q, `rounds` times. base: moves by a step that takes the residual
+   off, too; or NULL. False: the matrix cannot be factored. */
 GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, int32_t columns, double *motion,
                                     double *base) {
     size_t n = (size_t)s->variable_count, i;
@@ -13844,7 +13851,8 @@ GPROJI_INTERNAL void gproji_read_obj(gproji_reader *reader) {
         if (!gproji_next_word(reader)) continue;
         line = reader->line;
         if (gproji_word_is(reader, "v")) {
-            /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger counts */
+            /* a weight (1 number), a colour (3) or both may follow and are passed over; 8 stands for all larger
+               counts */
             double x[3] = {0, 0, 0};
             while (!reader->code && gproji_next_word(reader)) {
                 double number = gproji_word_number(reader);
@@ -14308,12 +14316,12 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    Based on Catmull, Clark: Recursively generated B-spline surfaces on arbitrary topological meshes (1978); Loop: Smooth
    subdivision surfaces based on triangles (1987); Nasri: Polyhedral subdivision methods for free-form surfaces (1987)
    for boundaries; Hoppe et al.: Piecewise smooth surface reconstruction (1994) for creases and corners; DeRose, Kass,
-   Truong: Subdivision surfaces in character animation (1998) for creases that end. Sparse products and transposition are
-   Gustavson's (1978).
+   Truong: Subdivision surfaces in character animation (1998) for creases that end. Sparse products and transposition
+   are Gustavson's (1978).
 
-   Each level makes a stencil row by row from the rules in the interface; fine positions are the stencil times the coarse
-   ones, and the mesh builder gets the faces.
-   Invariant: boundary edges are sharp on all levels, because GPROJI_SHARP outlasts them. */
+   Each level makes a stencil row by row from the rules in the interface; fine positions are the stencil times the
+   coarse ones, and the mesh builder gets the faces. Invariant: boundary edges are sharp on all levels, because
+   GPROJI_SHARP outlasts them. */
 
 enum {
     GPROJI_LEVELS_MAX = 14,              /* a triangle's 3 corners become 3 * 4^14; 3 * 4^15 are more than a mesh has */
@@ -14518,7 +14526,8 @@ GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int
         gproji_rows_add(rows, end[1], 0.125 * share);
         return;
     }
-    /* smooth, inside the mesh: `ring` is the weight for each neighbour, and with Catmull-Clark for each face's vertex */
+    /* smooth, inside the mesh: `ring` is the weight for each neighbour, and with Catmull-Clark for each face's
+       vertex */
     if (level->scheme == GPROJ_LOOP) {
         double c = 0.375 + 0.25 * cos(2 * GPROJI_PI / n);
         ring = share * (0.625 - c * c) / n;
@@ -14798,8 +14807,8 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
         gproj_stencil_destroy(step);
         return gproji_fail_memory(s->error);
     }
-    /* 1. Sharpness falls by one on the halves of an edge, and is 0 on new edges. The fine face at a corner begins with a
-       half of the corner's edge and ends with a half of the edge before. */
+    /* 1. Sharpness falls by one on the halves of an edge, and is 0 on new edges. The fine face at a corner begins with
+       a half of the corner's edge and ends with a half of the edge before. */
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, ++at, h = mesh->next[h]) {
@@ -14876,9 +14885,9 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
 
    A binary tree with axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median box centre along
    the axis on which the node's centres spread most, down to leaves with at most four items; searched depth first, the
-   nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each axis
-   and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any machine.
-   Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
+   nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each
+   axis and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any
+   machine. Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
    item[begin..end-1]; two children differ by one item at most, so no path is longer than 32 nodes. */
 typedef struct gproji_node {
     double low[3], high[3];
@@ -15086,7 +15095,8 @@ struct gproj_curve {
     gproji_hierarchy tree; /* over the segments */
 };
 
-/* Writes the point a + t (b - a), 0 <= t <= 1, nearest to p to `out`; returns t. A point that is not finite gives t = 0. */
+/* Writes the point a + t (b - a), 0 <= t <= 1, nearest to p to `out`; returns t. A point that is not finite gives t =
+   0. */
 GPROJI_INTERNAL double gproji_closest_on_segment(const double a[3], const double b[3], const double p[3],
                                                  double out[3]) {
     double ab[3], ap[3], square, t;
@@ -15867,7 +15877,8 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
 
 /* -- the three operators; there is room -- */
 
-/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after it. */
+/* Splits half-edge h's edge at parameter t from the origin. h ends at the new vertex; returns the half-edge after
+   it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
@@ -15940,8 +15951,8 @@ GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_
     s->edge_into[other / 2] = h / 2;
 }
 
-/* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at the
-   vertex, and at *apex one at the third vertex of a triangle, or -1. */
+/* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at
+   the vertex, and at *apex one at the third vertex of a triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
     int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
     *apex = -1;
@@ -16550,7 +16561,8 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
     for (v = 0; v < mesh->vertex_count; ++v)
         if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
-    /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a corner. */
+    /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
+       corner. */
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t last = mesh->vertex_halfedge[v];
         bool boundary = last >= 0 && mesh->face[last] < 0;
@@ -16818,9 +16830,9 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vert
     return count;
 }
 
-/* Finds the axis of the cone that the planes around a vertex touch; it is in all edges' bisecting planes. The unit vector
-   along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal to it
-   and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
+/* Finds the axis of the cone that the planes around a vertex touch; it is in all edges' bisecting planes. The unit
+   vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
+   to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex, double axis[3]) {
     static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = normals->mesh;
@@ -16970,8 +16982,8 @@ GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double 
     }
 }
 
-/* Does a side cross another, seen along the normal to the face's least-squares plane? The vectorial area would not
-   do: a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
+/* Does a side cross another, seen along the normal to the face's least-squares plane? The vectorial area would not do:
+   a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
    out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
                                        const double axis[3]) {
@@ -17346,7 +17358,8 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
     }
 }
 
-/* Chooses the unit vector m at the component's first vertex: along the vertex normals, as far as edges stay parallel. */
+/* Chooses the unit vector m at the component's first vertex: along the vertex normals, as far as edges stay
+   parallel. */
 GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
                                        double m[3]) {
     static const double up[3] = {0, 0, 1};
@@ -17811,7 +17824,8 @@ GPROJI_INTERNAL void gproji_core_corners(const gproji_pattern *p, int32_t at[GPR
 GPROJI_INTERNAL bool gproji_find_strips(int32_t sides, const int32_t *rest, int32_t *strip) {
     int32_t first, i, n, length = sides % 2 ? sides : sides / 2, cycles = sides % 2 ? 1 : 2, value, start;
     for (first = 0; first < cycles; ++first) {
-        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: a family). */
+        /* Once around, k_first becomes value - k_first (odd length: one solution) or value + k_first (even: a
+           family). */
         for (value = 0, n = 0, i = first; n < length; ++n, i = (i + 2) % sides) value = rest[(i + 1) % sides] - value;
         if (length % 2 ? value % 2 != 0 : value != 0) return false;
         start = length % 2 ? value / 2 : rest[(first + 1) % sides] / 2;
@@ -17872,8 +17886,9 @@ GPROJI_INTERNAL void gproji_try_edges(gproji_candidates *c, gproji_pattern *p, i
     } while (i < p->edges);
 }
 
-/* Tries the path with a corner at each node and rows: side 0 has all e_j and 2 w, so e_j = l - k - k on the others, and
-   w = (l_0 - l_1 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (two sides: k_0 - k_1). Strips begin at `least`. */
+/* Tries the path with a corner at each node and rows: side 0 has all e_j and 2 w, so e_j = l - k - k on the others,
+   and w = (l_0 - l_1 - ..) / 2 + the sum over k_i except i = 1 and n - 1 (two sides: k_0 - k_1). Strips begin at
+   `least`. */
 GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, int32_t least) {
     int32_t n = p->sides, rest[GPROJI_PATCH_SIDES], i, best, side;
     p->end[0] = p->end[1] = 1, p->edges = n - 1, p->below = 0;
@@ -19114,8 +19129,9 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
 
    A form has internal units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the variables
    3i..3i+2; others, such as face normals, come behind when a builder needs them. Each group of a builder has a
-   gproji_part: a rule, which says how unknowns start, how rows are refreshed and what a state keeps, and what that needs.
-   Solves, drags and states go through the parts, the last one added first. Parts never move: the system points to them. */
+   gproji_part: a rule, which says how unknowns start, how rows are refreshed and what a state keeps, and what that
+   needs. Solves, drags and states go through the parts, the last one added first. Parts never move: the system points
+   to them. */
 
 typedef struct gproji_part gproji_part;
 
@@ -19138,8 +19154,8 @@ typedef struct gproji_acts {
     gproj_refresh refresh; /* linearises the rows at x before each iteration; user: the part */
     /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. */
     void (*start)(gproji_part *part);
-    /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of smooth
-       solves with planar faces. */
+    /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of
+       smooth solves with planar faces. */
     void (*settle)(const gproji_part *part, double *x, int32_t from, int32_t to);
     /* Passes what a saved state keeps besides rows and variables. */
     void (*pass)(gproji_part *part, gproji_stream *stream, gproji_passing passing);
@@ -19589,13 +19605,14 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    dense, stream, system, loop, mesh, curve, surface, measure, form.
 
    Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
-   for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each iteration, to
-   phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a length in internal units, which
-   makes weights comparable. The variables in a row's terms never change; a refresh sets numbers only.
+   for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each iteration,
+   to phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a length in
+   internal units, which makes weights comparable. The variables in a row's terms never change; a refresh sets numbers
+   only.
 
-   To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as that
-   of gproj_add_midsphere: (1) start values of its unknowns, if it has any, at the system's x; (2) a refresh, if it is not
-   quadratic; (3) a rule with these; (4) the builder: a part, its unknowns, its group, its rows. */
+   To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as
+   that of gproj_add_midsphere: (1) start values of its unknowns, if it has any, at the system's x; (2) a refresh, if it
+   is not quadratic; (3) a rule with these; (4) the builder: a part, its unknowns, its group, its rows. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
@@ -19728,8 +19745,8 @@ enum {
     GPROJI_SETTLE_ROUNDS = 3
 };
 
-/* Settles normals: the unit n with the least sum (n'e)^2 over a face's edges e, by a few steps of inverse iteration from the
-   n at hand, which keeps its side. */
+/* Settles normals: the unit n with the least sum (n'e)^2 over a face's edges e, by a few steps of inverse iteration
+   from the n at hand, which keeps its side. */
 GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, int32_t from, int32_t to) {
     const gproj_mesh *mesh = part->form->mesh;
     for (; from < to; ++from) {
@@ -19752,9 +19769,9 @@ static const gproji_rule gproji_planarity_rule = {"planarity",     GPROJ_CONSTRA
 static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
                                                          GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_normal_acts};
 
-/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). All rows
-   of the group share two lists of terms, which name local variables: 0..2 are n in the first; n_x, v_ix, n_y, v_iy, n_z,
-   v_iz, v_jx, v_jy, v_jz are 0..8 in the second. n starts by form->work.area, see gproji_update_areas. */
+/* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). All
+   rows of the group share two lists of terms, which name local variables: 0..2 are n in the first; n_x, v_ix, n_y,
+   v_iy, n_z, v_iz, v_jx, v_jy, v_jz are 0..8 in the second. n starts by form->work.area, see gproji_update_areas. */
 GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     static const gproj_term unit[3] = {{0, 0, 1}, {1, 1, 1}, {2, 2, 1}};
     static const gproj_term edge[6] = {{0, 1, 1}, {2, 3, 1}, {4, 5, 1}, {0, 6, -1}, {2, 7, -1}, {4, 8, -1}};
@@ -20207,8 +20224,8 @@ GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t gro
     }
 }
 
-/* Fills in the rows with tangents at the present normals of the vertices. part->vertex: the vertex of each difference, which
-   has two rows. */
+/* Fills in the rows with tangents at the present normals of the vertices. part->vertex: the vertex of each difference,
+   which has two rows. */
 GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group,
                                                const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -20357,7 +20374,7 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
             return gproji_fail(&form->error, GPROJ_ERROR_INDEX, info.place, element,
                                "element weights: there is no %s %d (the mesh has %d, counted from 0)",
                                gproji_place_word(info.place), element, have);
-        if (!(weights[k] >= 0 && weights[k] <= 1e50))
+        if (!(weights[k] >= 0 && weights[k] <= gproji_weight_most))
             return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, info.place, element,
                                "element weights: the weight %g of %s %d in group '%s' is not in 0..1e50", weights[k],
                                gproji_place_word(info.place), element, info.name);
@@ -20805,8 +20822,8 @@ GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
 
 static const double gproji_settle_free = 1e-4; /* relative to the trace: axis points are free along the axis */
 
-/* Settles axis points: the p with the least sum (e'(m - p))^2 over a face's edges e with midpoints m, as near as can be to the
-   p at hand. */
+/* Settles axis points: the p with the least sum (e'(m - p))^2 over a face's edges e with midpoints m, as near as can be
+   to the p at hand. */
 GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *x, int32_t from, int32_t to) {
     const gproj_mesh *mesh = part->form->mesh;
     for (; from < to; ++from) {
@@ -20863,9 +20880,9 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     return gproji_built(form, part->group);
 }
 
-/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex (~v stands for the row a'a = 1):
-   a the axis at v_i, e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms: a, v_i,
-   v_j, n_f, n_g. */
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex (~v stands for the row a'a =
+   1): a the axis at v_i, e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms:
+   a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group,
                                           const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -21524,8 +21541,8 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
     return GPROJ_OK;
 }
 
-/* With u = o + f x for each variable, a u_i u_j = a (f_i f_j x_i x_j + o_j f_i x_i + o_i f_j x_j + o_i o_j). All times the
-   scale: phi becomes a length in internal units. */
+/* With u = o + f x for each variable, a u_i u_j = a (f_i f_j x_i x_j + o_j f_i x_i + o_i f_j x_j + o_i o_j). All times
+   the scale: phi becomes a length in internal units. */
 GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
                                      double constant, int32_t element) {
     gproji_part *part = gproji_callers_part(form, group);
@@ -22654,9 +22671,9 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
    a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it
-   shall keep 0.4 of what it was, s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration,
-   s = sqrt(a0), and a step that would leave less than 0.2 is found again. These bounds act on the steps only: they are
-   no part of residual and verdict. Where the mesh slides to the nearest one they ask for 0.1, and a step is refused that
+   shall keep 0.4 of what it was, s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s =
+   sqrt(a0), and a step that would leave less than 0.2 is found again. These bounds act on the steps only: they are no
+   part of residual and verdict. Where the mesh slides to the nearest one they ask for 0.1, and a step is refused that
    takes 3/4 of a face's area. */
 
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_small = 0.1,
@@ -22792,18 +22809,19 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    >>corners   Faces keep their corners. Uses platform, memory, error, vector, stream, system, loop, mesh,
    measure, form, guard.
 
-   Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular one may
-   have lost an edge. So every corner of a face keeps a part of the area that it had
+   Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular
+   one may have lost an edge. So every corner of a face keeps a part of the area that it had
        m'((b - a) x (c - b)) >= part m0'((b0 - a0) x (c0 - b0))                                                      (1)
-   with the vertices a, b, c, and m the face's normal at x (the variables of planar faces) or the normal m0 at the beginning
-   of the solve, which keeps the face from turning. Such faces are convex, without bow-ties, and all edges have a length.
-   Corners without such an area at the beginning are let go.
+   with the vertices a, b, c, and m the face's normal at x (the variables of planar faces) or the normal m0 at the
+   beginning of the solve, which keeps the face from turning. Such faces are convex, without bow-ties, and all edges
+   have a length. Corners without such an area at the beginning are let go.
 
-   A row asks for no more than its corner has when it is linearised, or a floor: corners may shrink as far as they must, but
-   slowly, and a wish for more does not hold up the constraints.
+   A row asks for no more than its corner has when it is linearised, or a floor: corners may shrink as far as they must,
+   but slowly, and a wish for more does not hold up the constraints.
 
-   Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are near
-   to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
+   Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are
+   near to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next
+   solve. */
 
 static const double gproji_corner_weight = 0.3;
 static const double gproji_corner_wanted = 0.3;  /* part of its area that the row of a corner asks for, */
@@ -22884,8 +22902,8 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     }
 }
 
-/* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
-   a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns its number, -1 after an error. */
+/* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x
+   (m_z), a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns its number, -1 after an error. */
 GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
     gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
@@ -22906,8 +22924,8 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
     return row;
 }
 
-/* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first one
-   it stops if that is enough. Returns whether there was one. */
+/* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first
+   one it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
                                          bool first) {
     const gproji_corners *guard = gproji_corners_of(part);
@@ -23076,9 +23094,9 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
    >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh, measure,
    form, catalogue, statics, guard.
 
-   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and which vertices lack it,
-   which demands could never hold, and which damage was done on the way. Each function below appends a clause to the
-   sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
+   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and which vertices
+   lack it, which demands could never hold, and which damage was done on the way. Each function below appends a clause
+   to the sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -23105,8 +23123,8 @@ GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t verte
     }
 }
 
-/* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a bound on
-   forces, does not hold. */
+/* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a
+   bound on forces, does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     bool up = gproji_rule_is_on(form, &gproji_compression_rule), down = gproji_rule_is_on(form, &gproji_tension_rule);
@@ -23142,8 +23160,8 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 
 /* -- demands that can never hold -- */
 
-/* Marks coordinates that a constraint prescribes by a row with a single term: held[i] = 1, value[i] the prescribed value;
-   else both are 0. Returns the number of vertices with three such coordinates. */
+/* Marks coordinates that a constraint prescribes by a row with a single term: held[i] = 1, value[i] the prescribed
+   value; else both are 0. Returns the number of vertices with three such coordinates. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
     int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
     memset(held, 0, (size_t)coordinates * sizeof *held);
@@ -23287,8 +23305,8 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
     }
 }
 
-/* Doubts equilibrium to the tolerance if the loads themselves are below it: on a mesh that has shrunk to a point, or beside
-   huge forces. */
+/* Doubts equilibrium to the tolerance if the loads themselves are below it: on a mesh that has shrunk to a point, or
+   beside huge forces. */
 GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
     static const double noticeable = 1e-3;
     const gproji_statics *s = form->statics;
@@ -23331,8 +23349,8 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     }
 }
 
-/* Does a row hold vertices in space: linear in them and changed by a translation, or quadratic in them, as lengths and areas
-   are? Differences of vertices, and products with normals, do not hold. */
+/* Does a row hold vertices in space: linear in them and changed by a translation, or quadratic in them, as lengths and
+   areas are? Differences of vertices, and products with normals, do not hold. */
 GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
     int32_t vertices = 3 * form->mesh->vertex_count;
     double sum[3] = {0, 0, 0};
@@ -23535,8 +23553,8 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     }
 }
 
-/* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more than it
-   must; once steps fail, as with many forces at their bounds, they are braked, too. */
+/* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more
+   than it must; once steps fail, as with many forces at their bounds, they are braked, too. */
 GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1};
     gproj_system *s = form->system;
@@ -23696,8 +23714,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
-    /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away from it,
-       and the longer the farther: then they get 9 at most. */
+    /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
+       from it, and the longer the farther: then they get 9 at most. */
     solve->loop.wish_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
     if (form->statics && gproji_is_on(form, form->statics->group))
         solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
@@ -23725,7 +23743,8 @@ GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
 }
 
-/* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has ended. */
+/* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has
+   ended. */
 GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     const double *x = gproj_system_values(form->system);
     gproj_result *result = &form->solve.loop.result;
@@ -23762,8 +23781,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     return solve->loop.result;
 }
 
-/* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth steps
-   begin. */
+/* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth
+   steps begin. */
 GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier, double stiffness,
                                             const gproj_solve_options *options) {
     gproj_result result;
@@ -23798,8 +23817,8 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_store_positions(form, form->before);
 }
 
-/* A solve that may begin again, with steps of different stiffness: the beginning of a path decides its end. The best end
-   counts. All attempts share the iterations and the time. */
+/* A solve that may begin again, with steps of different stiffness: the beginning of a path decides its end. The best
+   end counts. All attempts share the iterations and the time. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
     gproj_system *s = form->system;
@@ -23986,8 +24005,8 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), gproj_keep(0));
 }
 
-/* Passes whom the library's own groups belong to, and the corners that have rows, in their order. The form gets those that
-   come in. */
+/* Passes whom the library's own groups belong to, and the corners that have rows, in their order. The form gets those
+   that come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], end = 2 * form->mesh->halfedge_count, count = 0, k;
     bool in = gproji_comes_in(stream);
@@ -24169,12 +24188,12 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    the handles' vertices brings about the smallest dx in the tangent space, a projection,
        min 1/2 dx'D dx - f'dx,    G dx = 0.                                                                    (1)
    It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f (the method of multipliers, or a proximal
-   iteration: Hestenes 1969, Rockafellar 1976). Each round is one solve with the same factor, and multiplies G dx, in the
-   direction with the singular value sigma, by eps^2 / (sigma^2 + eps^2). So G dx = 0 holds far better than eps says, and
-   dependent rows do no harm.
-   S has a column for each coordinate of each handle. The responses to all are made orthonormal in D (pivoted Gram and
-   Schmidt, which finds handles that depend on each other): Q = (q_1, ..., q_r), Q'DQ = I. They move the handles by
-   L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|. */
+   iteration: Hestenes 1969, Rockafellar 1976). Each round is one solve with the same factor, and multiplies G dx, in
+   the direction with the singular value sigma, by eps^2 / (sigma^2 + eps^2). So G dx = 0 holds far better than eps
+   says, and dependent rows do no harm. S has a column for each coordinate of each handle. The responses to all are made
+   orthonormal in D (pivoted Gram and Schmidt, which finds handles that depend on each other): Q = (q_1, ..., q_r), Q'DQ
+   = I. They move the handles by L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|.
+   */
 
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
 static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
@@ -24320,8 +24339,8 @@ GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
     }
 }
 
-/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x. Where
-   rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
+/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x.
+   Where rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
 GPROJI_INTERNAL void gproji_shorten_restoration(gproj_drag *drag, double residual) {
     const double *x = gproj_system_values(drag->form->system);
     int32_t vertices = drag->form->mesh->vertex_count, halving, i;
