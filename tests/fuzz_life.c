@@ -414,7 +414,7 @@ static void gprojt_ask(gprojt_life *c) {
     switch (gprojt_byte(c) % 4) {
     case 0:
         m = gproj_measure(c->mesh, c->first->position, NULL);
-        GPROJT_MUST(m.min_edge <= m.max_edge || edges == 0);
+        GPROJT_MUST(m.min_edge <= m.max_edge || edges == 0 || !gprojt_all_finite(c->mesh->position, 3 * vertices));
         break;
     case 1:
         if (!gprojt_inside_has_forces(c->form)) break;
