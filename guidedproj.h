@@ -1,4 +1,4 @@
-/* guidedproj.h - v0.1 - form-finding with polygon meshes by guided projection
+/* guidedproj.h - v0.2 - form-finding with polygon meshes by guided projection
    Single-header C99 (and C++11) library; no dependencies but libc and libm. MIT licence or public domain, see LICENSE.
 
    WHAT IT DOES
@@ -268,9 +268,9 @@
 #include <stdint.h>
 
 #define GPROJ_VERSION_MAJOR 0
-#define GPROJ_VERSION_MINOR 1
+#define GPROJ_VERSION_MINOR 2
 #define GPROJ_VERSION_NUMBER (1000 * GPROJ_VERSION_MAJOR + GPROJ_VERSION_MINOR)
-#define GPROJ_VERSION "0.1"
+#define GPROJ_VERSION "0.2"
 
 /* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before
    an inclusion) the translation unit has its own private copy of the implementation and exports nothing. */

@@ -8,7 +8,7 @@ from conan.tools.files import copy
 
 class Guidedproj(ConanFile):
     name = "guidedproj"
-    version = "0.1"
+    version = "0.2"
     description = "Form-finding with polygon meshes by guided projection"
     license = "MIT OR Unlicense"
     package_type = "library"
