@@ -622,8 +622,8 @@ typedef struct gproj_group {
     void *refresh_user;
 } gproj_group;
 
-/* A group at the current x, in the units of the rows, without weights. In a bound phi stands for min(phi, 0), the
-   violation. */
+/* A group at the last evaluation, by a solve or a drag (zeros before), in the units of the rows, without weights. In a
+   bound phi stands for min(phi, 0), the violation. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -20363,6 +20363,10 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                            gproj_system_group_count(form->system));
     info = gproj_system_group_info(form->system, group);
     have = gproji_element_count(form->mesh, info.place);
+    if (info.place != GPROJ_PLACE_VERTEX && info.place != GPROJ_PLACE_EDGE && info.place != GPROJ_PLACE_FACE)
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                           "element weights: the rows of group '%s' belong to the whole mesh, not to elements",
+                           info.name);
     if (!elements && count == 0) count = have;
     if (count < 0 || (count > 0 && !weights) || (!elements && count > have))
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,

@@ -431,6 +431,7 @@ GPROJT_TEST(refusals) {
         if (i == 26) group = gproj_add_total_area_bounds(form, -INFINITY, -INFINITY, 1);
         if (i == 18 || i == 21) code = GPROJ_ERROR_INDEX;
         GPROJT_CHECK(group == -1 && gproj_form_error(form)->code == code);
+        if (i == 20) GPROJT_CHECK(strstr(gproj_form_error(form)->message, "belong to the whole mesh"));
         if (i == 2 || i == 4 || i == 24) GPROJT_CHECK(strstr(gproj_form_error(form)->message, "length bounds: min = "));
         if (group != -1 || gproj_form_error(form)->code != code)
             printf("  %d: %ld, %s\n", i, group, gproj_form_error(form)->message);
