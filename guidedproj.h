@@ -273,7 +273,7 @@
 #define GPROJ_VERSION "0.2"
 
 /* Every public function is declared with GPROJ_API, which you may define. In static mode (GPROJ_STATIC, defined before
-   an inclusion) the translation unit has its own private copy of the implementation and exports nothing. */
+   an inclusion) the translation unit has a private copy of the implementation and exports nothing. */
 #if defined(GPROJ_STATIC) && !defined(GUIDEDPROJ_IMPLEMENTATION)
 #define GUIDEDPROJ_IMPLEMENTATION
 #endif
@@ -415,7 +415,7 @@ enum {
    is no number. Numbers too large become infinite. */
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value);
 
-/* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns its length. */
+/* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns the length. */
 GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -746,7 +746,7 @@ GPROJ_API int32_t gproj_system_variable_count(const gproj_system *system);
 /* The variables, to read and to write; valid until variables are added. */
 GPROJ_API double *gproj_system_values(gproj_system *system);
 
-/* Adds an empty group; returns its number, from 0. */
+/* Adds an empty group; returns the number, from 0. */
 GPROJ_API int32_t gproj_system_add_group(gproj_system *system, const gproj_group *group);
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *system);
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, int32_t group);
@@ -1398,7 +1398,7 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight);
 
 /* -- constraints of your own -- */
 
-/* Adds an empty group for rows of your own; returns its number, or -1. Rows are quadratic in vertices and in unknowns
+/* Adds an empty group for rows of your own; returns the number, or -1. Rows are quadratic in vertices and in unknowns
    of your own, all in the mesh's units: see gproj_form_add_row. What changes from iteration to iteration needs a
    refresh: use the system, see gproj_form_system. */
 GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind kind, gproj_place place, double weight);
@@ -1427,13 +1427,13 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
 /* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
    In terms, 3 v + c is the coordinate c (0, 1, 2) of vertex v, and other numbers are unknowns of your own. Scale phi to
    be about a length, so that residuals and weights compare with those of other constraints: divide |v - p|^2 - r^2 by 2
-   r; if r is unknown, by twice its start value (examples/custom_constraint.c). `element`: the vertex, edge or face of
+   r; if r is unknown, by twice the start value (examples/custom_constraint.c). `element`: the vertex, edge or face of
    the row, or -1. */
 GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t count, const gproj_term *terms,
                                      double constant, int32_t element);
 /* -- groups: residuals and weights -- */
 
-/* What each element of the group's place lacks after a solve, by its last evaluation: the largest |phi| of its rows, of
+/* What each element of the group's place lacks after a solve, by the last evaluation: the largest |phi| of these rows, of
    bounds the violation, in mean edge lengths; 0 without rows. Refuses groups whose place is none of vertex, edge and
    face, and forms that were not solved. per_element: a number for each vertex, edge or face of the mesh; `error` may be
    NULL. */
@@ -2469,7 +2469,7 @@ GPROJI_INTERNAL gproj_memory gproji_account_of(const void *part, size_t offset) 
     return heap.account;
 }
 
-/* Adds up the accounts of an object and its parts, as if all peaks came together. */
+/* Adds up the accounts of an object and the parts, as if all peaks came together. */
 GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
     sum->used += part.used;
     sum->peak += part.peak;
@@ -8396,7 +8396,7 @@ GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32
     return row;
 }
 
-/* Ends a row whose terms and locals are written. Returns its number. */
+/* Ends a row whose terms and locals are written. Returns the number. */
 GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals) {
     row->wide = g->global || locals > GPROJI_WIDE_ROW;
     g->has_wide = g->has_wide || row->wide;
@@ -17769,6 +17769,11 @@ typedef struct gproji_patch {
     int32_t vertices;
 } gproji_patch;
 
+typedef struct gproji_flat {
+    double *xy; /* 2 * vertices, in the plane */
+    size_t capacity;
+} gproji_flat;
+
 typedef struct gproji_filling {
     gproji_heap *heap;
     gproji_pool pool; /* holds `seen` and `border` */
@@ -17788,8 +17793,7 @@ typedef struct gproji_filling {
     gproji_ints polygon; /* patch outlines, one after the other: 2 * vertex + (is it a patch corner) */
     gproji_ints patch;   /* outline ends in `polygon`; negative: the patch has been cut */
     gproji_ints quad;    /* 4 vertices each */
-    double *flat;        /* 2 * vertices, in the plane */
-    size_t flat_capacity;
+    gproji_flat flat;
     int32_t vertices;
     int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
     int32_t cut_vertices;   /* then those on cuts */
@@ -18381,10 +18385,10 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    void *block = f->flat;
-    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
-    f->flat = (double *)block;
-    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
+    void *block = f->flat.xy;
+    if (!gproji_reserve(f->heap, &block, &f->flat.capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
+    f->flat.xy = (double *)block;
+    f->flat.xy[2 * (size_t)f->vertices] = x, f->flat.xy[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
 }
@@ -18427,7 +18431,7 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
     /* A simple curve may have chords that cross. */
-    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->heap, f->flat.xy, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     for (from = 0; f->start.data[from + 1] <= i;) ++from;
     for (to = 0; f->start.data[to + 1] <= j;) ++to;
@@ -18462,7 +18466,7 @@ GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
 
 GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) {
-    return gproji_inner_angle(o->f->flat, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
+    return gproji_inner_angle(o->f->flat.xy, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
                               gproji_outline_vertex(o, i + o->count - 1));
 }
 
@@ -18504,7 +18508,7 @@ GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int3
 
 /* Tries cuts from place i to place j, over edge numbers with the right parity; a cheaper one replaces `best`. */
 GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
-    const double *xy = o->f->flat;
+    const double *xy = o->f->flat.xy;
     int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end, k;
     double at[2][2], length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge, cost = 0;
     bool corner[2][2];
@@ -18595,14 +18599,14 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
         int32_t a, b, first = f->vertices;
         for (k = 0; k < o.count; ++k)
             o.edge +=
-                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+                gproji_distance2(f->flat.xy, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
         cut = gproji_find_cut(&o);
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
             double t = (double)k / cut.edges;
-            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
-                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
+            if (!gproji_add_flat(f, (1 - t) * f->flat.xy[2 * b] + t * f->flat.xy[2 * a],
+                                 (1 - t) * f->flat.xy[2 * b + 1] + t * f->flat.xy[2 * a + 1]))
                 return false;
         }
         if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
@@ -18696,7 +18700,7 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; done && i < n; ++i) {
         int32_t v = gproji_outline_vertex(o, place[p.first] + i);
         number[patch.loop.data[i]] = v;
-        x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
+        x += f->flat.xy[2 * v] / n, y += f->flat.xy[2 * v + 1] / n;
     }
     for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
@@ -18843,9 +18847,9 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
 
 GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
     const int32_t *quad = u->f->quad.data;
-    const double *p = u->f->flat + 2 * (size_t)quad[corner],
-                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
-                 *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
+    const double *p = u->f->flat.xy + 2 * (size_t)quad[corner],
+                 *q = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_next(corner)],
+                 *r = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_previous(corner)];
     double s = u->edge[corner / 4];
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
 }
@@ -18898,7 +18902,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
-    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
+    double *moving = f->flat.xy + 2 * (size_t)f->boundary, before, slope, length = 1;
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
@@ -18922,7 +18926,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
 /* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
 GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     int32_t unknowns = 2 * (f->vertices - f->boundary), quads = (int32_t)f->quad.count / 4, q, i, j, n;
-    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
+    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat.xy);
     gproji_untangling u;
     double *size;
     if (code || unknowns == 0) return code;
@@ -18938,8 +18942,8 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     /* 1. Wanted edges: the boundary's own, harmonic inside. */
     size = u.start; /* still free, and large enough */
     for (i = 0; !code && i < f->boundary; ++i)
-        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
-                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
+        size[i] = 0.5 * (gproji_distance2(f->flat.xy, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat.xy, i, (i + f->boundary - 1) % f->boundary));
     if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, size);
     for (q = 0; !code && q < quads; ++q) {
         const int32_t *v = f->quad.data + 4 * (size_t)q;
@@ -18994,8 +18998,8 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     for (v = f->boundary; !code && v < f->vertices; ++v) {
         double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
-        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(f->flat.xy[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat.xy[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
     if (!code) {
@@ -19018,7 +19022,7 @@ GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gpro
         info->max_valence = gproji_max(info->max_valence, valence);
     }
     for (i = 0; i < n; ++i) {
-        double angle = gproji_inner_angle(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+        double angle = gproji_inner_angle(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
                                           f->quad.data[gproji_quad_previous(i)]) *
                        (180 / GPROJI_PI);
         if (i == 0 || angle < info->min_angle) info->min_angle = angle;
@@ -19038,10 +19042,11 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
             int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
-            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
+            double x = f->flat.xy[2 * next] - f->flat.xy[2 * before],
+                   y = f->flat.xy[2 * next + 1] - f->flat.xy[2 * before + 1];
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
-            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
-            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
+            depth *= gproji_fmin(gproji_distance2(f->flat.xy, i, next), gproji_distance2(f->flat.xy, i, before));
+            if (!gproji_add_flat(f, f->flat.xy[2 * i] - depth * y, f->flat.xy[2 * i + 1] + depth * x) ||
                 !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
                 return gproji_fail_memory(f->error);
         }
@@ -19064,7 +19069,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     code = gproji_place_vertices(f);
     n = (int32_t)f->quad.count;
     for (i = 0; i < n; ++i)
-        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+        if (!(gproji_turn2(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
                            f->quad.data[gproji_quad_previous(i)]) > 0))
             break;
     *good = i == n;
@@ -19111,7 +19116,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_build_filling(&f, object);
     if (!code) gproji_describe_filling(&f, &object->mesh, &found);
     gproji_pool_give_all(&f.pool);
-    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
+    gproji_give(f.heap, f.flat.xy, f.flat.capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
     gproji_ints_give(f.heap, &f.start);
     gproji_ints_give(f.heap, &f.polygon);
@@ -19611,8 +19616,8 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    only.
 
    To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as
-   that of gproj_add_midsphere: (1) start values of its unknowns, if it has any, at the system's x; (2) a refresh, if it
-   is not quadratic; (3) a rule with these; (4) the builder: a part, its unknowns, its group, its rows. */
+   that of gproj_add_midsphere: (1) start values of unknowns, if there are any, at the system's x; (2) a refresh, if it
+   is not quadratic; (3) a rule with these; (4) the builder: a part, unknowns, a group, rows. */
 
 /* -- points: fixed vertices, handles, closeness -- */
 
@@ -21257,7 +21262,7 @@ enum {
     GPROJI_PRICE = 2
 };
 
-/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and its gradient. `size`:
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient. `size`:
    by how much C changes when the mesh grows by a mean edge length. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     static const double none[3] = {0, 0, 0};
@@ -22690,12 +22695,12 @@ enum {
 /* The part's entries are the faces that are guarded. */
 typedef struct gproji_guard {
     bool on;      /* in this solve */
-    double *area; /* 3 per face: its vectorial area when the solve began */
+    double *area; /* 3 per face: the vectorial area when the solve began */
 } gproji_guard;
 
 GPROJI_INTERNAL gproji_guard *gproji_guard_of(const gproji_part *part) { return (gproji_guard *)part->data; }
 
-/* The normal of a guarded face as its variables say at x; a triangle has its first one. */
+/* The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
     static const double none[3] = {0, 0, 0};
     int32_t normal = part->form->normal[part->vertex[index]];
@@ -22725,7 +22730,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     }
 }
 
-/* Has a face lost most of its area in the step to x from `before`, seen along its normal or the one it had at first? */
+/* Has a face lost most of the area in the step to x from `before`, seen along its normal or the one it had at first? */
 GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, const double *x) {
     const gproji_part *part = gproji_own_part((const gproj_form *)user, GPROJI_OWN_GUARD);
     const gproji_guard *guard = gproji_guard_of(part);
@@ -22907,7 +22912,7 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
 }
 
 /* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x
-   (m_z), a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns its number, -1 after an error. */
+   (m_z), a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns the number, -1 after an error. */
 GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
     gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
@@ -22996,7 +23001,7 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *system) {
     return woken;
 }
 
-/* Has a corner become small, and lost most of its area in the step to x? */
+/* Has a corner become small, and lost most of the area in the step to x? */
 GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, const double *x) {
     const gproj_form *form = (const gproj_form *)user;
     const gproji_part *part = gproji_acting_corners(form);

@@ -51,12 +51,11 @@ static void refresh_cubic(void *user, gproj_system *system, int32_t group, const
 /* (A), (B): what the roof is like after 0, 1, 2, ... steps, guided by closeness in the first five. */
 static void guided_projection(const gproj_mesh *roof, bool cubic, gproj_measures *measures) {
     gproj_group group = {"det", GPROJ_CONSTRAINT, false, GPROJ_PLACE_FACE, gproj_keep(1), refresh_cubic, NULL};
-    gproj_schedule fading = {0.03, 0.3, 5}; /* 0.03 * 0.3^n, n <= 5 */
     int32_t steps, number, f, i;
     for (steps = 0; steps <= STEPS; ++steps) {
         gproj_mesh *mesh = gproj_mesh_copy(roof, NULL, NULL);
         gproj_form *form = gproj_form_create(mesh, NULL);
-        gproj_set_schedule(form, gproj_add_closeness(form, 1), fading);
+        gproj_set_schedule(form, gproj_add_closeness(form, 1), (gproj_schedule){0.03, 0.3, 5});
         number = cubic ? gproj_system_add_group(gproj_form_system(form), &group) : gproj_add_planarity(form, 1);
         for (f = 0; cubic && f < QUADS; ++f) {
             gproj_term term[12];
