@@ -450,9 +450,9 @@ GPROJT_TEST(refused_layouts) {
     gproj_mesh_destroy(mesh);
     gprojt_refused_data(NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "there are none");
     data = good, data.float_position = NULL;
-    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either position or");
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "not both");
     data = good, data.position = exact;
-    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "either position or");
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "not both");
     data = good, data.position_stride = 8;
     gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "position_stride");
     data = good, data.short_face_vertex = NULL;
