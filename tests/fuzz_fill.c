@@ -45,7 +45,7 @@ static void gprojt_check_mesh(const gproj_mesh *mesh, const gproj_fill_info *inf
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     gprojt_input in = {data, size, 0};
-    double points[3 * GPROJT_POINTS];
+    double points[3 * GPROJT_POINTS], around;
     int32_t corners[GPROJT_SIDES], sides[GPROJT_SIDES], i, count;
     gproj_fill_options options;
     gproj_fill_info info;
@@ -68,6 +68,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     if (ways & 4) options.side_count = ways & 128 ? gprojt_next_of(&in, GPROJT_SIDES + 1) : options.corner_count;
     for (i = 0; i < options.side_count; ++i) sides[i] = gprojt_next(&in) % 16 - (ways & 2 ? 2 : -1);
     if (ways & 8) options.edge_length = ways & 2 ? gprojt_next_number(&in, true) : (32 + gprojt_next(&in)) / 64.0;
+    /* A long curve with short edges takes its time, and is for tests that measure: at most 200 edges around. */
+    for (i = 0, around = 0; i < count; ++i) around += gprojt_far(points + 3 * i, points + 3 * ((i + 1) % count));
+    if (options.edge_length > 0 && around / options.edge_length > 200) options.edge_length = around / 200;
     options.keep_points = ways & 16;
     options.rings = gprojt_next_of(&in, 4) - (ways & 2 ? 1 : 0), options.variant = gprojt_next_of(&in, 4);
     mesh = gproj_mesh_fill(count, points, ways & 64 ? NULL : &options, &info, &host, &error);
