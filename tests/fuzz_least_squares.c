@@ -89,7 +89,7 @@ static double gprojt_violation(const gprojt_problem *t, const double *x, double 
         worst = fmaxl(worst, fabsl(g) / unit), largest = fmaxl(largest, size / unit);
     }
     *residual = (double)sqrtl(sum);
-    return worst > 1e-60L ? (double)(worst / largest) : 0; /* next to 0 everything is optimal */
+    return worst > 1e-15L ? (double)(worst / largest) : 0; /* next to 0 everything is optimal */
 }
 
 static bool gprojt_moderate(const gprojt_problem *t) {
