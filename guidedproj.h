@@ -10703,7 +10703,7 @@ typedef struct gproji_standing {
 typedef struct gproji_hooks {
     void (*settle)(void *user, double *x); /* gives local unknowns (normals) their best values at x */
     bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
-    bool (*wake)(void *user, gproj_system *system); /* gives those rows, at the x before; are there new ones? */
+    bool (*wake)(void *user); /* gives those rows, at the x before; are there new ones? */
     bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
     void *user;
 } gproji_hooks;
@@ -11391,7 +11391,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         guard = gproji_wake_guard(s);
         gproji_step_back(s);
         violations += violated;
-        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user, s)))) round = 0;
+        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user)))) round = 0;
     }
     return false;
 }
@@ -19185,7 +19185,7 @@ struct gproji_part {
     int32_t count;       /* entries in use, in `vertex` and in lists by entry */
     int32_t capacity;    /* entries that these have room for */
     int32_t *vertex;     /* the elements with rows: vertices, edges, faces, or half-edges */
-    double given[4];     /* numbers from the caller, in internal units: a target, bounds, prices */
+    double given[4];     /* numbers from the caller, in internal units (stresses in theirs): a target, bounds, prices */
     double *factor;      /* more of them, one per entry; or NULL */
     int32_t curve_count; /* curves that the part owns, in internal units */
     gproj_curve **curve; /* NULL: none; an entry may be NULL */
@@ -19486,6 +19486,12 @@ GPROJI_INTERNAL gproji_part *gproji_part_of(const gproj_form *form, int32_t grou
     gproji_part *part = form->part;
     while (part && part->group != group) part = part->next;
     return part;
+}
+
+/* Whom a group belongs to. */
+GPROJI_INTERNAL gproji_own gproji_own_of(const gproj_form *form, int32_t group) {
+    const gproji_part *part = gproji_part_of(form, group);
+    return part ? part->rule->own : GPROJI_OWN_NONE;
 }
 
 /* The part that the library has added for this purpose; NULL: none yet. */
@@ -19942,15 +19948,14 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     }
 }
 
-/* Passes segments, and t1, from which the next solve's turns. */
+/* Passes segments, and t1, from which that of the next solve turns; during a solve it is among the numbers of the rows. */
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     int32_t i, k, count;
-    (void)passing;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
         gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
-        for (k = 0; k < 3; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
+        for (k = 0; k < 3 && curve && !passing; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
     }
 }
 
@@ -20186,7 +20191,7 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
     if (!term) return -1;
     gproji_add_boundary_differences(form, group, term);
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
@@ -20264,7 +20269,7 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
         if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
     }
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group,
@@ -20341,7 +20346,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
         }
     }
     gproji_give_terms(form, term);
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API gproj_code gproj_set_schedule(gproj_form *form, int32_t group, gproj_schedule schedule) {
@@ -20436,7 +20441,7 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
         gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
         gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 /* The common length starts at the mean. */
@@ -20754,7 +20759,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
                                 k ? across[i % 2][c] : -across[i % 2][c]);
         gproj_system_add_row(form->system, group, 6, term, 0, edge);
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
@@ -20778,7 +20783,7 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
         }
         gproj_system_add_row(form->system, group, 12, term, 0, v);
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
@@ -20794,7 +20799,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
         gproji_set_term(&term, i, -1, 1);
         gproj_system_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 /* -- shapes of faces, areas, volume -- */
@@ -20982,7 +20987,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
             h = gproji_rotate(mesh, h);
         } while (h != start && gproji_form_ready(form));
     }
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH,      GPROJ_PLACE_FACE,
@@ -21003,7 +21008,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
             gproj_system_add_row(form->system, group, 4, term, 0, f);
         }
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 /* A face's area has, by the vertex v_i at which half-edge h begins, the gradient (v_(i+1) - v_(i-1)) x a / (2 |a|). */
@@ -21208,7 +21213,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
             gproj_system_add_row(form->system, group, 9, term, -sign * length / 2, edge);
         }
     }
-    return gproji_form_ready(form) ? group : -1;
+    return gproji_built(form, group);
 }
 
 /* Rows (|a| - min) / (2 sqrt(min)) and (max - |a|) / (2 sqrt(max)) for each face. */
@@ -22003,7 +22008,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
         if (s->axes[v]) gproji_add_vertex_equilibrium(form, v, spoke, term);
     gproji_give(&form->own, spoke, spokes, sizeof *spoke);
     gproji_give(&form->own, term, count, sizeof *term);
-    return gproji_form_ready(form) ? s->group : -1;
+    return gproji_built(form, s->group);
 }
 
 /* -- bounds and fairness of forces -- */
@@ -22134,7 +22139,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
             gproj_system_add_row(form->system, part->group, 6, term, 0, edge);
         }
     }
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 /* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->vertex holds the pairs e, f. */
@@ -22177,7 +22182,7 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
             gproj_system_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
-    return gproji_form_ready(form) ? part->group : -1;
+    return gproji_built(form, part->group);
 }
 
 /* -- the forces that balance a given shape best -- */
@@ -22880,15 +22885,14 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
 }
 
 /* Linearises the rows that act, with the normals at x. */
-GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
-                                            const gproj_progress *progress) {
-    const gproji_part *part = (const gproji_part *)user;
+GPROJI_INTERNAL void gproji_linearise_corners(const gproji_part *part) {
+    gproj_system *system = part->form->system;
+    int32_t group = part->group;
     const gproji_corners *guard = gproji_corners_of(part);
     const gproji_group *g = gproji_group_at(system, group);
     const gproj_mesh *mesh = part->form->mesh;
     const double *x = gproj_system_values(system);
     int32_t r, k, t, count;
-    (void)progress;
     for (r = 0; r < g->row_count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         int32_t h = guard->corner[r] / 2, face = mesh->face[h];
@@ -22909,6 +22913,12 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
                 term[t + 2 * k + 1].a = -term[t + 2 * k].a;
             }
     }
+}
+
+GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
+                                            const gproj_progress *progress) {
+    (void)system, (void)group, (void)progress;
+    gproji_linearise_corners((const gproji_part *)user);
 }
 
 /* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x
@@ -22980,9 +22990,9 @@ GPROJI_INTERNAL bool gproji_inspect_corners(void *user, const double *before, co
 }
 
 /* Lets the marked corners act; returns whether there are new ones. x is that of before the step. */
-GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *system) {
-    static const gproj_progress unknown = {0, 0, 0, false}; /* corners do not depend on it */
+GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     gproj_form *form = (gproj_form *)user;
+    gproj_system *system = form->system;
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     gproji_corners *guard = gproji_corners_of(part);
     const gproji_row *rows;
@@ -22997,7 +23007,7 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user, gproj_system *system) {
         gproji_place_row(system, part->group, row, sqrt(guard->size[corner / 2]), rows[row].constant);
         woken = true;
     }
-    if (woken) gproji_refresh_corners(part, system, part->group, &unknown);
+    if (woken) gproji_linearise_corners(part);
     return woken;
 }
 
@@ -23027,7 +23037,6 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
 
 /* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
 GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
-    static const gproj_progress unknown = {0, 0, 0, false};
     gproji_corners *guard = gproji_corners_of(part);
     gproj_system *s = part->form->system;
     const gproj_mesh *mesh = part->form->mesh;
@@ -23046,7 +23055,7 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
         else
             gproji_pass_safeguard_row(stream, s, part->group, guard->row[corner], passing);
     }
-    if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, &unknown);
+    if (stream->mode == GPROJI_READ) gproji_linearise_corners(part);
 }
 
 static const gproji_acts gproji_corner_acts = {gproji_refresh_corners, NULL, NULL, gproji_pass_corners};
@@ -23512,8 +23521,7 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t i;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        const gproji_part *part = gproji_part_of(form, i);
-        gproji_own own = part ? part->rule->own : GPROJI_OWN_NONE;
+        gproji_own own = gproji_own_of(form, i);
         if (g->role < GPROJI_GUARD && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
             g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0)
             return true;
@@ -23819,8 +23827,9 @@ GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_resul
 /* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
 GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_part *part;
-    for (part = form->part; part; part = part->next) /* what refreshes keep, such as segments of curves */
-        if (part->rule->acts && part->rule->acts->start) part->rule->acts->start(part);
+    for (part = form->part; part;
+         part = part->next) /* what refreshes keep, such as segments of curves, is of later ones */
+        if (part->rule->acts && part->rule->acts->refresh && part->rule->acts->start) part->rule->acts->start(part);
     memcpy(gproj_system_values(form->system), end, (size_t)gproj_system_variable_count(form->system) * sizeof *end);
     gproji_see_here(form->system);
     gproji_store_positions(form, form->before);
@@ -23978,15 +23987,8 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
 /* Passes a group, and what its rule keeps. */
 GPROJI_INTERNAL void gproji_pass_part(gproji_stream *stream, gproj_form *form, int32_t group, gproji_passing passing) {
     gproji_part *part = gproji_part_of(form, group);
-    bool own = part && part->rule->own != GPROJI_OWN_NONE;
-    gproji_pass_group(stream, form->system, group, own, passing);
+    gproji_pass_group(stream, form->system, group, gproji_own_of(form, group) != GPROJI_OWN_NONE, passing);
     if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
-}
-
-/* Whom a group belongs to. */
-GPROJI_INTERNAL gproji_own gproji_own_of(const gproj_form *form, int32_t group) {
-    const gproji_part *part = gproji_part_of(form, group);
-    return part ? part->rule->own : GPROJI_OWN_NONE;
 }
 
 /* Passes the groups, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
@@ -24079,9 +24081,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     hash = gproji_hash_variables(hash, form->system);
     /* 2. Groups. */
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
-        part = gproji_part_of(form, i);
-        if (!part || part->rule->own == GPROJI_OWN_NONE)
-            hash = gproji_hash_group(hash, gproji_group_at(form->system, i));
+        if (gproji_own_of(form, i) == GPROJI_OWN_NONE) hash = gproji_hash_group(hash, gproji_group_at(form->system, i));
     }
     /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {

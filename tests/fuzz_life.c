@@ -315,20 +315,6 @@ static void gprojt_drag_it(gprojt_life *c) {
 
 /* -- states -- */
 
-/* The checksum of the format. */
-static void gprojt_seal(uint8_t *state, size_t size) {
-    uint64_t hash = 14695981039346656037u;
-    size_t end = size - 8, i, k, width;
-    for (i = 0; i < end; i += width) {
-        uint64_t value = 0;
-        width = end - i >= 8 ? 8 : 1;
-        for (k = width; k > 0; --k) value = value << 8 | state[i + k - 1];
-        hash = (hash ^ value) * 1099511628211u;
-        hash ^= hash >> 29;
-    }
-    for (i = 0; i < 8; ++i) state[end + i] = (uint8_t)(hash >> 8 * i);
-}
-
 static void gprojt_save_it(gprojt_life *c) {
     size_t size = gproj_state_size(c->form);
     uint8_t *state = (uint8_t *)malloc(size + 1);

@@ -57,6 +57,20 @@ static inline gproj_group_info gprojt_info(const gproj_system *s, int32_t group)
 
 /* -- forms -- */
 
+/* Gives a state that was changed the checksum of the format: for forgeries. */
+static inline void gprojt_seal(uint8_t *state, size_t size) {
+    uint64_t hash = 14695981039346656037u;
+    size_t end = size - 8, i, k, width;
+    for (i = 0; i < end; i += width) {
+        uint64_t value = 0;
+        width = end - i >= 8 ? 8 : 1;
+        for (k = width; k > 0; --k) value = value << 8 | state[i + k - 1];
+        hash = (hash ^ value) * 1099511628211u;
+        hash ^= hash >> 29;
+    }
+    for (i = 0; i < 8; ++i) state[end + i] = (uint8_t)(hash >> 8 * i);
+}
+
 /* The form's unit of length in the mesh's. */
 static inline double gprojt_unit(const gproj_form *form) {
     double centre[3], scale = 0;

@@ -59,7 +59,9 @@ GPROJT_TEST(a_ball_in_any_units) {
         int32_t group = gprojt_add_ball(form, mesh, sizes[i], shifts[i], NULL, NULL, &at);
         double ball[4], unit = gproj_mesh_mean_edge_length(mesh);
         gproj_result result;
-        GPROJT_CHECK(group >= 0 && gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+        /* The third mesh is 3,000 sizes away from the origin: terms of its rows cancel, and differences show that. */
+        GPROJT_CHECK(group >= 0);
+        GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < (i < 2 ? 1e-9 : 1e-7));
         result = gproj_solve(form, 25, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
         GPROJT_CHECK(gproj_form_get_unknowns(form, at, 4, ball, NULL) == GPROJ_OK);

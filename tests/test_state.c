@@ -402,20 +402,6 @@ GPROJT_TEST(every_damage_is_seen) {
     gproj_mesh_destroy(mesh);
 }
 
-/* The checksum of the format, for forgeries. */
-static void gprojt_seal(uint8_t *state, size_t size) {
-    uint64_t hash = 14695981039346656037u;
-    size_t end = size - 8, i, k, width;
-    for (i = 0; i < end; i += width) {
-        uint64_t value = 0;
-        width = end - i >= 8 ? 8 : 1;
-        for (k = width; k > 0; --k) value = value << 8 | state[i + k - 1];
-        hash = (hash ^ value) * 1099511628211u;
-        hash ^= hash >> 29;
-    }
-    for (i = 0; i < 8; ++i) state[end + i] = (uint8_t)(hash >> 8 * i);
-}
-
 /* Forged states with a right checksum are taken or refused, and never do harm: what they hold is in its range. */
 GPROJT_TEST(forged_states_do_no_harm) {
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
