@@ -763,7 +763,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *system, int32_t group, i
                                           double constant);
 /* Sets the weight of one row, times the group's; 1 when the row is added, 0 leaves it out. */
 GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *system, int32_t group, int32_t row, double weight);
-/* phi of one row at the current x; with `gradient` (as long as the variables, may be NULL) its dense gradient. */
+/* phi of one row at the current x, summed up exactly as verdicts are where large terms cancel; with `gradient` (as long
+   as the variables, may be NULL) its dense gradient. */
 GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t group, int32_t row, double *gradient);
 
 /* Compares every gradient with central differences of the values; returns the largest difference found, relative
@@ -8632,6 +8633,27 @@ GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const 
     return phi;
 }
 
+/* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
+   for large terms that cancel. */
+GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
+    const int32_t *variable = g->local.variable + row->local;
+    const gproj_term *term = g->term + row->term, *end = term + row->terms;
+    gproji_sum sum = {0, 0};
+    sum.high = row->constant;
+    for (; term < end; ++term) {
+        gproji_sum product = {0, 0};
+        gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
+        if (term->j < 0) {
+            gproji_sum_add(&sum, product.high);
+            sum.low += product.low;
+        } else {
+            gproji_sum_add_product(&sum, product.high, x[variable[term->j]]);
+            sum.low += product.low * x[variable[term->j]];
+        }
+    }
+    return gproji_sum_value(&sum);
+}
+
 /* gradient += grad phi at x, whether compiled or not. */
 GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const double *x, double *gradient) {
     const gproji_row *row = &g->row[r];
@@ -8645,12 +8667,16 @@ GPROJI_INTERNAL void gproji_row_gradient(const gproji_group *g, int32_t r, const
 }
 
 GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, int32_t row, double *gradient) {
+    const gproji_group *g;
+    double phi;
     if (!gproji_system_has_row(s, group, row)) return 0;
+    g = &s->group[group];
     if (gradient) {
         memset(gradient, 0, (size_t)s->variable_count * sizeof *gradient);
-        gproji_row_gradient(&s->group[group], row, s->x, gradient);
+        gproji_row_gradient(g, row, s->x, gradient);
     }
-    return gproji_row_value(&s->group[group], row, s->x);
+    phi = gproji_row_value_precisely(g, &g->row[row], s->x);
+    return gproji_is_finite(phi) ? phi : gproji_row_value(g, row, s->x); /* exact products of huge numbers overflow */
 }
 
 /* -- compilation -- */
@@ -9080,27 +9106,6 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 }
 
 /* -- evaluation -- */
-
-/* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
-   for large terms that cancel. */
-GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
-    const int32_t *variable = g->local.variable + row->local;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    gproji_sum sum = {0, 0};
-    sum.high = row->constant;
-    for (; term < end; ++term) {
-        gproji_sum product = {0, 0};
-        gproji_sum_add_product(&product, term->a, x[variable[term->i]]);
-        if (term->j < 0) {
-            gproji_sum_add(&sum, product.high);
-            sum.low += product.low;
-        } else {
-            gproji_sum_add_product(&sum, product.high, x[variable[term->j]]);
-            sum.low += product.low * x[variable[term->j]];
-        }
-    }
-    return gproji_sum_value(&sum);
-}
 
 /* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
 GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {

@@ -20,6 +20,10 @@ clean 'the header does not end with its licence or name it' "$(grep -qiE 'licen[
 for file in guidedproj.h $(grep -E '\.[ch]$' <<<"$texts"); do
     [ "$(tail -c 1 "$file" | od -An -c | tr -d ' ')" = '\n' ] || fail "$file does not end with a newline"
 done
+for file in $(grep -E '^tests/test_.*\.c$' <<<"$files"); do
+    clean "$file: cases that main does not run" "$(comm -23 <(grep -oP '^GPROJT_TEST\(\K\w+' "$file" | sort -u) \
+        <(grep -oP 'GPROJT_RUN\(\K\w+' "$file" | sort -u))"
+done
 for script in $(grep -E '^(tests/.*\.sh|\.ci/.*)$' <<<"$files"); do
     bash -n "$script" && pass || fail "$script is not valid bash"
 done

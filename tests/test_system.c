@@ -71,6 +71,21 @@ GPROJT_TEST(rows_and_weights_are_replaced) {
     gproj_system_destroy(s);
 }
 
+/* (x - y)^2 by three terms of 1e16 each, whose plain sum is off by 2; huge numbers, whose exact products overflow. */
+GPROJT_TEST(values_of_large_terms_that_cancel) {
+    static const gproj_term square[3] = {{0, 0, 1}, {0, 1, -2}, {1, 1, 1}};
+    double x[2] = {1e8, 1e8 + 1};
+    gproj_system *s = gproj_system_create(NULL);
+    gproj_system_add_variables(s, 2, 1, x);
+    gproj_system_add_row(s, gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1), 3, square, 0, 0);
+    GPROJT_CHECK(gproj_system_row_value(s, 0, 0, NULL) == 1);
+    gproj_system_values(s)[0] = 1e152, gproj_system_values(s)[1] = 0;
+    GPROJT_NEAR(gproj_system_row_value(s, 0, 0, NULL) / 1e304, 1, 1e-14);
+    gproj_system_values(s)[0] = 1e200;
+    GPROJT_CHECK(gproj_system_row_value(s, 0, 0, NULL) == HUGE_VAL);
+    gproj_system_destroy(s);
+}
+
 GPROJT_TEST(group_info) {
     gproj_system *s = gprojt_hand_system();
     gproj_group_info info = gproj_system_group_info(s, 0);
@@ -1043,6 +1058,7 @@ GPROJT_TEST(memory_is_accounted_and_limited) {
 
 int main(void) {
     GPROJT_RUN(values_and_gradients_by_hand);
+    GPROJT_RUN(values_of_large_terms_that_cancel);
     GPROJT_RUN(rows_and_weights_are_replaced);
     GPROJT_RUN(group_info);
     GPROJT_RUN(gradients_by_finite_differences);
