@@ -300,7 +300,7 @@ static void gprojt_drag_it(gprojt_life *c) {
         const double *to = gprojt_positions(c, c->handles);
         gproj_code code = gproj_drag_move(c->drag, to);
         if (code != GPROJ_OK) GPROJT_MUST(gprojt_unmoved(c->mesh, before));
-        GPROJT_MUST(gprojt_all_finite(c->mesh->position, n));
+        if (code == GPROJ_OK) GPROJT_MUST(gprojt_all_finite(c->mesh->position, n));
         GPROJT_MUST(gproj_drag_residual(c->drag) >= 0 && gproj_drag_get_info(c->drag).freedom <= 3 * c->handles);
     } else if (gprojt_byte(c) & 1) {
         result = gproj_drag_end(c->drag);
