@@ -47,11 +47,12 @@ typedef struct
     int32_t edges, worst;
     double unit;        /* one unit of the form's forces, in N: the ratio of all loads */
     double correlation; /* Pearson's */
-    double difference;  /* the largest, over the largest force of the form */
+    double largest;     /* force of the form, in N */
+    double difference;  /* the largest, over that */
 } tool_comparison;
 
 typedef struct tool_extremes {
-    int32_t moved;                                               /* vertex that moves the most */
+    int32_t moved, pressed; /* vertices with the largest displacement and reaction */
     int32_t compressed, pulled, bent, twisted, used, near_euler; /* edges */
     int32_t in_tension;                                          /* edges */
     double weight, load[3], reaction[3];                         /* sums: the beams' own, at vertices, of supports */
@@ -64,8 +65,7 @@ typedef struct tool {
     gprojx_material material;
     double gravity, scale, mean_edge; /* mean_edge: in metres, instead of the scale; 0: the scale is given */
     int32_t pieces;
-    tool_support support[MOST_SUPPORTS];
-    int32_t support_count;
+    tool_support support[MOST_SUPPORTS + 1]; /* up to the first without `which` */
     bool skip_buckling, quiet, help;
 
     gproj_mesh *mesh;
@@ -158,9 +158,11 @@ static bool set_flag(tool *t, void *place, const char *name, const char *value) 
 }
 
 static bool add_support(tool *t, void *place, const char *name, const char *value) {
+    int i = 0;
     (void)place;
-    if (t->support_count == MOST_SUPPORTS) return fail(t, EXIT_USAGE, "more than %d supports", MOST_SUPPORTS);
-    t->support[t->support_count].option = name, t->support[t->support_count++].which = value;
+    while (t->support[i].which) ++i;
+    if (i == MOST_SUPPORTS) return fail(t, EXIT_USAGE, "more than %d options say what is held", MOST_SUPPORTS);
+    t->support[i].option = name, t->support[i].which = value;
     return true;
 }
 
@@ -172,8 +174,8 @@ typedef struct tool_option {
 
 static const tool_option options[] = {
     {"section", "KIND:SIZES",
-     "box:W,H,T  rectangle:W,H  tube:D,T  circle:D, in m (box:0.1,0.1,0.005);\n"
-     "the height H stands along the normal of the mesh",
+     "box:W,H,T  rectangle:W,H  tube:D,T  circle:D in m\n"
+     "(box:0.1,0.1,0.005): width along y, height along z, diameter,\nthickness of walls",
      set_section, 0},
     {"young", "E", "Young's modulus in Pa (210e9, steel)", set_positive, offsetof(tool, material.young)},
     {"shear", "G", "shear modulus in Pa (81e9)", set_positive, offsetof(tool, material.shear)},
@@ -182,18 +184,19 @@ static const tool_option options[] = {
     {"gravity", "G", "in m/s^2, downwards along z (9.81)", set_weight, offsetof(tool, gravity)},
     {"scale", "S", "metres in one unit of the mesh (1)", set_positive, offsetof(tool, scale)},
     {"mean-edge", "L", "instead of --scale: the mean edge is L metres long", set_positive, offsetof(tool, mean_edge)},
-    {"loads", "FILE", "forces on vertices in N: CSV with the lines VERTEX,FX,FY,FZ", set_text, offsetof(tool, loads)},
+    {"loads", "FILE", "forces on vertices in N: CSV, lines VERTEX,FX,FY,FZ", set_text, offsetof(tool, loads)},
     {"pinned", "WHICH",
-     "vertices that cannot move, but turn. WHICH: boundary, a list such as\n"
-     "0,7,20-29, or a file of such numbers. Without any support: those of\n--forces, else boundary",
+     "vertices that turn, but cannot move. WHICH: boundary, a list\n"
+     "such as 0,7,20-29, or a file of such numbers. Where nothing is\n"
+     "said to be held: the supports of --forces, else boundary",
      add_support, 0},
     {"fixed", "WHICH", "vertices that neither move nor turn", add_support, 0},
     {"roller", "WHICH", "vertices that cannot move in z", add_support, 0},
     {"divide", "N",
-     "beams an edge (2): one finds displacements and moments as exactly,\nbut not how it buckles between its joints",
+     "beams an edge (2): with 1 forces and displacements are as\n"
+     "exact, but not how an edge buckles between its vertices",
      set_pieces, offsetof(tool, pieces)},
-    {"forces", "FILE", "compare with the forces of the form: the CSV of guidedproj --forces", set_text,
-     offsetof(tool, forces)},
+    {"forces", "FILE", "compare with these: the CSV of guidedproj --forces", set_text, offsetof(tool, forces)},
     {"skip-buckling", "", "leave out the load factor", set_flag, offsetof(tool, skip_buckling)},
     {"report", "FILE.json", "everything, for each beam and vertex", set_text, offsetof(tool, report)},
     {"picture", "FILE.svg", "faces by utilisation, edges by axial force", set_text, offsetof(tool, picture)},
@@ -208,10 +211,14 @@ enum {
 static void print_help(void) {
     int i;
     puts("usage: frame MESH.{obj,off} OPTIONS\n\n"
-         "Analyses the edges of a mesh as beams with rigid joints, under their own weight\n"
-         "and loads: axial forces, moments, stresses, displacements, reactions, and the\n"
-         "factor by which all loads may grow before it buckles. Vertices count from 0, z\n"
-         "is up, compression is positive.\n");
+         "Analyses the edges of a mesh as straight beams with rigid joints (Euler and\n"
+         "Bernoulli, linear), under their own weight and loads: axial forces, moments,\n"
+         "stresses, displacements, reactions, and the factor by which all loads may grow\n"
+         "before it buckles. Vertices count from 0, z is up, compression is positive.\n\n"
+         "Local frame of an edge: x along it, z the normal of the mesh as far as it is\n"
+         "orthogonal to x, y = z cross x. Utilisation: the largest |N|/A + M/W along the\n"
+         "edge (M/W added for y and z, of round sections that of the vector) over the\n"
+         "yield stress; torsion is told apart.\n");
     for (i = 0; i < OPTION_COUNT; ++i) {
         const char *line = options[i].help;
         int width = printf("  --%s %s", options[i].name, options[i].value);
@@ -239,7 +246,8 @@ static bool read_command_line(tool *t, int argc, char **argv) {
     for (i = 1; i < argc && !t->help; ++i) {
         const char *name = argv[i] + 2, *equals = strchr(argv[i], '='), *value = equals ? equals + 1 : NULL;
         size_t size = equals ? (size_t)(equals - name) : strlen(argv[i]) - 2;
-        if (strncmp(argv[i], "--", 2) != 0) {
+        if (argv[i][0] == '-' && argv[i][1] != '-') return fail(t, EXIT_USAGE, "there is no option %s", argv[i]);
+        if (argv[i][0] != '-') {
             if (t->input) return fail(t, EXIT_USAGE, "there are two inputs, '%s' and '%s'", t->input, argv[i]);
             t->input = argv[i];
             continue;
@@ -317,8 +325,8 @@ static int32_t edge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
     return -1;
 }
 
-/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I, which holds only
-   where no option says what is held. */
+/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I, which
+   holds only where no option says what is held. */
 static bool read_force(tool *t, const char *line, size_t size, int32_t number, gproj_error *error) {
     static const struct {
         const char *name;
@@ -338,8 +346,7 @@ static bool read_force(tool *t, const char *line, size_t size, int32_t number, g
     if (!gprojx_check_vertex(field[0], count, number, error)) return false;
     if (kind == 0 && !gprojx_check_vertex(field[1], count, number, error)) return false;
     for (k = 0; k < 3 && kind == 1; ++k) t->form_load[3 * (size_t)field[0] + (size_t)k] = field[k + 1];
-    for (k = 0; k < 3 && kind == 2 && t->support_count == 0; ++k)
-        t->frame.held[6 * (size_t)field[0] + (size_t)k] = true;
+    for (k = 0; k < 3 && kind == 2 && !t->support[0].which; ++k) t->frame.held[6 * (size_t)field[0] + (size_t)k] = true;
     e = kind == 0 ? edge_between(t->mesh, (int32_t)field[0], (int32_t)field[1]) : 0;
     if (e < 0)
         return gprojx_refuse(error, GPROJ_ERROR_INDEX, "line %ld: no edge joins vertices %g and %g", (long)number,
@@ -370,7 +377,11 @@ static bool read_loads(tool *t) {
     if (text && load && !gprojx_read_loads(text, t->mesh->vertex_count, load, &error))
         fail_error(t, t->loads, ", ", &error);
     for (v = 0; t->exit_code == 0 && v < t->mesh->vertex_count; ++v)
-        for (k = 0; k < 3; ++k) t->frame.load[6 * (size_t)v + (size_t)k] = load[3 * (size_t)v + (size_t)k];
+        for (k = 0; k < 3; ++k) {
+            t->frame.load[6 * (size_t)v + (size_t)k] = load[3 * (size_t)v + (size_t)k];
+            if (fabs(load[3 * (size_t)v + (size_t)k]) > 0 && t->mesh->vertex_halfedge[v] < 0)
+                fail(t, EXIT_REFUSED, "%s: vertex %ld bears a load, and no edge ends there", t->loads, (long)v);
+        }
     free(text), free(load);
     return t->exit_code == 0;
 }
@@ -434,7 +445,7 @@ static bool make_frame(tool *t) {
         return fail(t, EXIT_MEMORY, "out of memory");
     for (e = 0; e < t->mesh->edge_count; ++e)
         if (!make_beams(t, e)) return false;
-    for (i = 0; i < t->support_count; ++i)
+    for (i = 0; t->support[i].which; ++i)
         if (!hold(t, &t->support[i])) return false;
     if ((t->forces && !read_forces(t)) || (t->loads && !read_loads(t))) return false;
     for (i = 0; i < 6 * t->mesh->vertex_count; ++i) any |= t->frame.held[i];
@@ -464,27 +475,34 @@ static bool is_held(const tool *t, int32_t vertex) {
     return held[0] && held[1] && held[2];
 }
 
-/* Compares the axial forces with those of the form, over the edges that carry some there. */
-static void compare(tool *t) {
-    tool_comparison *c = &t->comparison;
-    double loads = 0, of_form = 0, most = 0, x, y, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+/* Sums the sizes of all loads: of the beams, and at vertices. */
+static double sum_of_loads(const tool *t) {
+    double sum = 0;
     int32_t e, v;
-    for (e = 0; e < t->mesh->edge_count; ++e) loads -= t->edge[e].length * t->frame.beam[e * t->pieces].load[2];
-    for (v = 0; v < t->mesh->vertex_count; ++v) {
-        loads += gprojx_length3(t->frame.load + 6 * (size_t)v);
-        of_form += gprojx_length3(t->form_load + 3 * (size_t)v);
-    }
-    c->unit = loads / of_form;
+    for (e = 0; e < t->mesh->edge_count; ++e) sum -= t->edge[e].length * t->frame.beam[e * t->pieces].load[2];
+    for (v = 0; v < t->mesh->vertex_count; ++v) sum += gprojx_length3(t->frame.load + 6 * (size_t)v);
+    return sum;
+}
+
+/* Compares the axial forces with those of the form, over the edges that carry some there. */
+static bool compare(tool *t) {
+    tool_comparison *c = &t->comparison;
+    double of_form = 0, x, y, sum_x = 0, sum_y = 0, xx = 0, xy = 0, yy = 0;
+    int32_t e, v;
+    for (v = 0; v < t->mesh->vertex_count; ++v) of_form += gprojx_length3(t->form_load + 3 * (size_t)v);
+    if (!(of_form > 0)) return fail(t, EXIT_REFUSED, "%s: no lines load,I,FX,FY,FZ with loads", t->forces);
+    c->unit = sum_of_loads(t) / of_form;
     for (e = 0; e < t->mesh->edge_count; ++e) {
         if (is_held(t, t->mesh->origin[2 * e]) && is_held(t, t->mesh->origin[2 * e + 1])) continue;
         x = c->unit * t->edge[e].form_force, y = t->edge[e].compression;
         if (fabs(x - y) > c->difference) c->difference = fabs(x - y), c->worst = e;
-        most = fmax(most, fabs(x));
+        c->largest = fmax(c->largest, fabs(x));
         c->edges++, sum_x += x, sum_y += y, xx += x * x, xy += x * y, yy += y * y;
     }
     xx -= sum_x * sum_x / c->edges, xy -= sum_x * sum_y / c->edges, yy -= sum_y * sum_y / c->edges;
     c->correlation = xy / sqrt(xx * yy);
-    c->difference /= most;
+    c->difference /= c->largest;
+    return true;
 }
 
 /* Returns the edge with the largest number, `sign` times the member of tool_edge at this offset. */
@@ -497,6 +515,7 @@ static int32_t largest_edge(const tool *t, size_t place, double sign) {
     return best;
 }
 
+static double reaction(const tool *t, int32_t vertex) { return gprojx_length3(t->frame.reaction + 6 * (size_t)vertex); }
 static double displacement(const tool *t, int32_t vertex) {
     return gprojx_length3(t->frame.motion + 6 * (size_t)vertex);
 }
@@ -519,6 +538,7 @@ static void find_extremes(tool *t) {
     }
     for (v = 0; v < t->mesh->vertex_count; ++v) {
         if (displacement(t, v) > displacement(t, x->moved)) x->moved = v;
+        if (reaction(t, v) > reaction(t, x->pressed)) x->pressed = v;
         for (k = 0; k < 3; ++k) {
             x->load[k] += t->frame.load[6 * (size_t)v + (size_t)k];
             x->reaction[k] += t->frame.reaction[6 * (size_t)v + (size_t)k];
@@ -529,10 +549,12 @@ static void find_extremes(tool *t) {
 static bool analyse(tool *t) {
     gproj_error error;
     int32_t e;
+    if (!(sum_of_loads(t) > 0))
+        return fail(t, EXIT_USAGE, "nothing loads the frame: neither --density and --gravity nor --loads");
     if (gprojx_frame_solve(&t->frame, &error) != GPROJ_OK) return fail_error(t, t->input, ": ", &error);
     for (e = 0; e < t->mesh->edge_count; ++e) measure_edge(t, e);
     find_extremes(t);
-    if (t->forces) compare(t);
+    if (t->forces && !compare(t)) return false;
     if (!t->skip_buckling && gprojx_frame_buckle(&t->frame, t->axial, &t->buckling) != GPROJ_OK)
         return fail(t, EXIT_MEMORY, "out of memory");
     return true;
@@ -541,6 +563,12 @@ static bool analyse(tool *t) {
 /* ---- picture and report ---- */
 
 static const char *file_name(const char *path) { return strrchr(path, '/') ? strrchr(path, '/') + 1 : path; }
+
+/* Returns the end of a scale of four parts with round ends, at least `high`. */
+static double round_scale(double high) {
+    double part = high / 4, size = pow(10, floor(log10(part)));
+    return 4 * size * (part < 3 * size ? ceil(2 * part / size) / 2 : ceil(part / size));
+}
 
 /* Colours faces by the largest utilisation around them, and edges by their axial force in kN. */
 static gproj_code draw(tool *t, FILE *file) {
@@ -565,7 +593,8 @@ static gproj_code draw(tool *t, FILE *file) {
     picture.title = title, picture.caption = caption;
     picture.legend = "largest stress around each face, % of the yield stress";
     picture.face_value = used, picture.edge_value = force;
-    picture.linear = true, picture.high = high > 0 ? high : 1;
+    picture.linear = true;
+    picture.high = high > 0 ? round_scale(high) : 1;
     if (used && force) code = gprojx_picture(file, mesh, &picture);
     free(used), free(force);
     return code;
@@ -580,6 +609,8 @@ static void report_sums(tool *t, gprojx_json *j) {
     for (k = 0; k < 6; ++k) gprojx_json_number(j, keys[k], k < 3 ? x->load[k] : x->reaction[k - 3]);
     gprojx_json_number(j, "max_displacement", displacement(t, x->moved));
     gprojx_json_integer(j, "max_displacement_vertex", x->moved);
+    gprojx_json_number(j, "max_reaction", reaction(t, x->pressed));
+    gprojx_json_integer(j, "max_reaction_vertex", x->pressed);
     gprojx_json_integer(j, "edges_in_tension", x->in_tension);
     gprojx_json_number(j, "max_compression", t->edge[x->compressed].compression);
     gprojx_json_number(j, "max_tension", -t->edge[x->pulled].compression);
@@ -647,6 +678,7 @@ static gproj_code write_report(tool *t, FILE *file) {
         gprojx_json_integer(j, "edges", t->comparison.edges);
         gprojx_json_number(j, "unit", t->comparison.unit);
         gprojx_json_number(j, "correlation", t->comparison.correlation);
+        gprojx_json_number(j, "max_force", t->comparison.largest);
         gprojx_json_number(j, "max_difference", t->comparison.difference);
         gprojx_json_close(j, '}');
     }
@@ -726,8 +758,10 @@ static void print_summary(const tool *t) {
     }
     printf("%s: %ld vertices, %ld edges as beams of %s m, %ld supports\n", file_name(t->input),
            (long)t->mesh->vertex_count, (long)t->mesh->edge_count, t->section_text, (long)supports);
-    printf("loads         own weight %s, at vertices %s; the supports bear them to %.0e\n", amount(x->weight, "N", a),
-           amount(gprojx_length3(x->load), "N", b), sum > 0 ? sqrt(difference / sum) : 0);
+    printf("loads         own weight %s, at vertices %s in all\n", amount(x->weight, "N", a),
+           amount(gprojx_length3(x->load), "N", b));
+    printf("reactions     at most %s, at vertex %ld; their sum is that of the loads to %.0e\n",
+           amount(reaction(t, x->pressed), "N", a), (long)x->pressed, sum > 0 ? sqrt(difference / sum) : 0);
     printf("displacement  at most %s, at vertex %ld\n", amount(displacement(t, x->moved), "m", a), (long)x->moved);
     printf("axial forces  %s compression to %s tension; %ld edges in tension\n",
            amount(t->edge[x->compressed].compression, "N", a), amount(fmax(0, -t->edge[x->pulled].compression), "N", b),
@@ -741,10 +775,11 @@ static void print_summary(const tool *t) {
            100 * t->edge[x->near_euler].euler_share, (long)t->mesh->origin[2 * x->near_euler],
            (long)t->mesh->origin[2 * x->near_euler + 1]);
     if (t->forces)
-        printf("form          axial forces correlate with its by %.4f; they differ by at most %.3g %% of its largest, "
-               "between vertices %ld and %ld (its unit of force is %s)\n",
-               c->correlation, 100 * c->difference, (long)t->mesh->origin[2 * c->worst],
-               (long)t->mesh->origin[2 * c->worst + 1], amount(c->unit, "N", a));
+        printf(
+            "form          axial forces correlate by %.4f with those of the form; the largest difference is %.3g %% of "
+            "the largest, between vertices %ld and %ld (1 is %s)\n",
+            c->correlation, 100 * c->difference, (long)t->mesh->origin[2 * c->worst],
+            (long)t->mesh->origin[2 * c->worst + 1], amount(c->unit, "N", a));
     print_buckling(t);
 }
 

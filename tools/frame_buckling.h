@@ -4,11 +4,11 @@
        buckling.factor[0], buckling.residual[0], buckling.shape               the smallest factor and the shape
        free(buckling.shape);
 
-   The factors are the positive numbers f with (K + f G) x = 0 for some x: K is the elastic stiffness, G the geometric one
-   of the axial forces under the given loads. Forces of both signs are allowed; negative f belong to loads turned round
-   and do not count. With m = 1/f this is -G x = m K x, whose largest m are sought: K is positive definite, so they are at
-   one end of the spectrum, however large negative m are. Displacements before buckling are neglected, and moments and
-   torsion taken not to weaken the frame.
+   The factors are the positive numbers f with (K + f G) x = 0 for some x: K is the elastic stiffness, G the geometric
+   one of the axial forces under the given loads. Forces of both signs are allowed; negative f belong to loads turned
+   round and do not count. With m = 1/f this is -G x = m K x, whose largest m are sought: K is positive definite, so
+   they are at one end of the spectrum, however large negative m are. Displacements before buckling are neglected, and
+   moments and torsion taken not to weaken the frame.
 
    Include guidedproj.h before this file. */
 #ifndef GPROJX_FRAME_BUCKLING_H
