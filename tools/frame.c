@@ -42,8 +42,8 @@ typedef struct tool_edge { /* a beam along an edge of the mesh */
     double form_force;         /* compression in the form, its units */
 } tool_edge;
 
-typedef struct
-    tool_comparison { /* of axial forces with those of the form, over the edges that are not held at both ends */
+/* Axial forces beside those of the form, over the edges that are not held at both ends. */
+typedef struct tool_comparison {
     int32_t edges, worst;
     double unit;        /* one unit of the form's forces, in N: the ratio of all loads */
     double correlation; /* Pearson's */
@@ -325,33 +325,38 @@ static int32_t edge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
     return -1;
 }
 
-/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I, which
-   holds only where no option says what is held. */
+/* Reads a line that begins with `name`, and then has `count` numbers. */
+static bool read_named(const char *line, size_t size, const char *name, int32_t count, double *field) {
+    size_t length = strlen(name);
+    return size > length && strncmp(line, name, length) == 0 &&
+           gprojx_read_fields(line + length, size - length, count, field);
+}
+
+/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I, which holds
+   only where no option says what is held. */
 static bool read_force(tool *t, const char *line, size_t size, int32_t number, gproj_error *error) {
-    static const struct {
-        const char *name;
-        int32_t fields;
-    } kinds[] = {{"edge,", 3}, {"load,", 4}, {"support,", 1}};
+    int32_t count = t->mesh->vertex_count, e, k;
     double field[4];
-    int32_t count = t->mesh->vertex_count, e, k, kind;
-    size_t length;
     while (size > 0 && isspace((unsigned char)line[size - 1])) --size;
-    for (kind = 0; kind < 3; ++kind)
-        if (size > strlen(kinds[kind].name) && strncmp(line, kinds[kind].name, strlen(kinds[kind].name)) == 0) break;
     if (size == 0 || (number == 1 && strncmp(line, "kind,", 5) == 0)) return true;
-    length = kind < 3 ? strlen(kinds[kind].name) : 0;
-    if (kind == 3 || !gprojx_read_fields(line + length, size - length, kinds[kind].fields, field))
+    if (read_named(line, size, "edge,", 3, field)) {
+        if (!gprojx_check_vertex(field[0], count, number, error) ||
+            !gprojx_check_vertex(field[1], count, number, error))
+            return false;
+        e = edge_between(t->mesh, (int32_t)field[0], (int32_t)field[1]);
+        if (e < 0)
+            return gprojx_refuse(error, GPROJ_ERROR_INDEX, "line %ld: no edge joins vertices %g and %g", (long)number,
+                                 field[0], field[1]);
+        t->edge[e].form_force = field[2] * t->edge[e].length / t->scale;
+    } else if (read_named(line, size, "load,", 4, field)) {
+        if (!gprojx_check_vertex(field[0], count, number, error)) return false;
+        memcpy(t->form_load + 3 * (size_t)field[0], field + 1, 3 * sizeof *field);
+    } else if (read_named(line, size, "support,", 1, field)) {
+        if (!gprojx_check_vertex(field[0], count, number, error)) return false;
+        for (k = 0; k < 3 && !t->support[0].which; ++k) t->frame.held[6 * (size_t)field[0] + (size_t)k] = true;
+    } else
         return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "line %ld: expected edge,I,J,W or load,I,FX,FY,FZ or support,I",
                              (long)number);
-    if (!gprojx_check_vertex(field[0], count, number, error)) return false;
-    if (kind == 0 && !gprojx_check_vertex(field[1], count, number, error)) return false;
-    for (k = 0; k < 3 && kind == 1; ++k) t->form_load[3 * (size_t)field[0] + (size_t)k] = field[k + 1];
-    for (k = 0; k < 3 && kind == 2 && !t->support[0].which; ++k) t->frame.held[6 * (size_t)field[0] + (size_t)k] = true;
-    e = kind == 0 ? edge_between(t->mesh, (int32_t)field[0], (int32_t)field[1]) : 0;
-    if (e < 0)
-        return gprojx_refuse(error, GPROJ_ERROR_INDEX, "line %ld: no edge joins vertices %g and %g", (long)number,
-                             field[0], field[1]);
-    if (kind == 0) t->edge[e].form_force = field[2] * t->edge[e].length / t->scale;
     return true;
 }
 

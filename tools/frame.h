@@ -427,26 +427,33 @@ static gproj_code gprojx_frame_name_mechanism(const gprojx_frame *frame, const d
 
 /* Factors K, or names the mechanism. */
 static gproj_code gprojx_frame_prepare(gprojx_frame *frame, gproj_error *error) {
-    const double least = 1e-14; /* of x'K x / x'D x: a chain of 1000 beams has 1e-12 */
+    const double least = 1e-14; /* of x'K x / x'D x: a cantilever of 1000 beams has 5e-13 */
     size_t motions = 6 * (size_t)frame->node_count;
-    double *x = (double *)calloc(2 * motions + 1, sizeof *x), easiest = 0;
+    double *x = (double *)calloc(2 * motions + 1, sizeof *x);
     gproj_factor_outcome outcome;
+    bool shifted;
     gproj_code code = x && gprojx_frame_assemble(frame)
                           ? gproj_cholesky_analyse(frame->cholesky, frame->unknowns, frame->start, frame->row, NULL)
                           : GPROJ_ERROR_MEMORY;
     if (code == GPROJ_OK && frame->unknowns > 0) {
+        /* Rounding decides whether a singular matrix is factored; with a small shift it always is. */
         outcome = gprojx_frame_factor(frame, 0);
-        if (outcome == GPROJ_NOT_POSITIVE_DEFINITE) outcome = gprojx_frame_factor(frame, 1e-10);
-        if (outcome == GPROJ_FACTORED) easiest = gprojx_frame_easiest(frame, x, x + motions);
-        if (outcome != GPROJ_FACTORED)
-            code = GPROJ_ERROR_MEMORY;
-        else if (!(easiest > least))
+        shifted = outcome == GPROJ_NOT_POSITIVE_DEFINITE;
+        if (shifted) outcome = gprojx_frame_factor(frame, 1e-10);
+        if (outcome == GPROJ_FACTOR_FAILED) {
+            code = gproj_cholesky_error(frame->cholesky)->code;
+        } else if (outcome == GPROJ_NOT_POSITIVE_DEFINITE) {
+            error->code = code = GPROJ_ERROR_NUMBER;
+            snprintf(error->message, sizeof error->message, "the stiffness of the frame cannot be factored");
+        } else if (!(gprojx_frame_easiest(frame, x, x + motions) > least) || shifted) {
             code = gprojx_frame_name_mechanism(frame, x, error);
-        else if (frame->value[frame->start[1] - 1] > 0 && gprojx_frame_factor(frame, 0) != GPROJ_FACTORED)
-            code = gprojx_frame_name_mechanism(frame, x, error);
+        }
     }
     free(x);
-    if (code == GPROJ_ERROR_MEMORY) error->code = code, strcpy(error->message, gproj_code_string(code));
+    if (code != GPROJ_OK && error->code == GPROJ_OK) {
+        error->code = code;
+        snprintf(error->message, sizeof error->message, "%s", gproj_code_string(code));
+    }
     return code;
 }
 
