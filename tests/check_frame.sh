@@ -71,6 +71,9 @@ run 'supports of three kinds' vault.obj --fixed side.txt --pinned 42,43 --roller
 holds 'a roller bears in z alone' 'abs(r["vertices"][46]["fx"]) == 0 and r["vertices"][46]["fz"] > 0 and abs(r["vertices"][46]["ux"]) > 0'
 holds 'a pinned vertex has no moment' 'r["vertices"][42]["mx"] == 0 and r["vertices"][42]["rx"] != 0 and r["vertices"][3]["mx"] != 0'
 
+run 'corners' vault.obj --fixed corners --skip-buckling
+grep -q ' 4 supports' out.txt && pass || fail 'a square has four corners'
+
 # Refusals name the place.
 printf '24,1,2\n' >short.csv
 printf '# nothing\n99,0,0,1\n' >far.csv
@@ -118,6 +121,18 @@ else
     grep -v '^support,[1-9]' form.csv >corner.csv
     run 'supports of a form' form.obj --forces corner.csv --fixed 48 --skip-buckling
     grep -q ' 1 supports' out.txt && pass || fail 'supports of the form count beside --fixed'
+fi
+if [ -x "$tool" ]; then # the examples of --help run as they are printed
+    mkdir examples
+    cp "$root/examples/roof.obj" examples
+    echo '200,0,0,-1000' >examples/snow.csv
+    ln -s "$tool" guidedproj
+    ./frame --help | sed -n '/^examples/,/^$/p' | sed -e 1d -e ':a' -e '/\\$/{N;s/\\\n//;ba' -e '}' | grep . >examples/list
+    [ "$(wc -l <examples/list)" -ge 4 ] && pass || fail '--help has too few examples'
+    while IFS= read -r command; do
+        (cd examples && PATH=$work:$PATH sh -c "$command" >out.txt 2>&1 </dev/null) && pass ||
+            fail "the example '$command': $(head -n 3 examples/out.txt)"
+    done <examples/list
 fi
 if [ ! -x "$tool" ] || [ ! -f "$data/Intersection.obj" ]; then
     skip 'the frame of Intersection: no tool, or the folder of real meshes is not there (GPROJ_DATA)'

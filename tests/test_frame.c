@@ -102,7 +102,7 @@ GPROJT_TEST(frame_skew_cantilever) {
 }
 
 /* Moments w L^2/12 at the ends and w L^2/24 in the middle, where the beam hangs by w L^4/384 EI; one beam finds the
-   moments, too. Upright, its own weight goes into the axial force. */
+   moments, too. Upright, the own weight goes into the axial force. */
 GPROJT_TEST(frame_clamped_beam) {
     const double a[3] = {0, 0, 0}, b[3] = {4, 3, 0}, top[3] = {0, 0, 5};
     gprojx_section section = gprojx_section_box(0.1, 0.15, 0.008);
@@ -146,7 +146,7 @@ GPROJT_TEST(frame_clamped_beam) {
     }
 }
 
-/* A portal clamped at its feet, with a load on its beam. By slope and deflection, with the rotation t of the joints
+/* A portal clamped at its feet, with a load on the beam. By slope and deflection, with the rotation t of the joints
    and their way d inwards (the beam is shortened by its thrust): (4 EI/h + 2 EI/L) t - 6 EI/h^2 d = q L^2/12, and the
    thrust C = (EI/h^2) (6 t - 12 d/h) gives d = C L / 2 EA. */
 GPROJT_TEST(frame_portal) {
@@ -350,7 +350,7 @@ static double arch_moment(int32_t count, bool clamped) {
         frame.beam[i].load[2] = -q * (b[0] - a[0]) / frame.beam[i].length;
     }
     hold(&frame, 0, clamped ? "012345" : "012"), hold(&frame, count, clamped ? "012345" : "012");
-    for (i = 0; i <= count; ++i) frame.held[6 * i + 1] = true; /* it stays in its plane */
+    for (i = 0; i <= count; ++i) frame.held[6 * i + 1] = true; /* the arch stays in a plane */
     frame.held[3] = true;
     if (!solve(&frame)) most = NAN;
     for (i = 0; i < count; ++i) {
@@ -381,7 +381,7 @@ GPROJT_TEST(frame_parabolic_arch) {
 }
 
 /* The smallest load factor of a column of `count` beams under the load 1, over pi^2 EI / L^2; lower and upper: the
-   held motions. The column stands along (1, 2, 2), is pressed along itself, and is softer about its local z. */
+   held motions. The column stands upright, pressed along itself, and is softer about the local z. */
 static double column_factor(int32_t count, bool clamped, bool top_clamped, bool top_guided) {
     gprojx_section section = gprojx_section_rectangle(0.03, 0.05);
     const double a[3] = {0, 0, 0}, b[3] = {0, 0, 3};
@@ -456,6 +456,34 @@ GPROJT_TEST(frame_buckling_clusters) {
     gprojx_frame_destroy(&frame);
 }
 
+/* The shape of a frame with all kinds of forces and the factor make K x + f G x vanish; twice the forces give half the
+   factor. */
+GPROJT_TEST(frame_buckling_shape) {
+    gprojx_section section = gprojx_section_rectangle(0.02, 0.03);
+    gprojx_buckling one, two;
+    gprojx_frame frame;
+    double *axial, *kx, *gx, most = 0, rest = 0;
+    int32_t i, n;
+    GPROJT_REQUIRE(grid_frame(&frame, straight, &section) && solve(&frame));
+    n = 6 * frame.node_count;
+    axial = (double *)calloc((size_t)frame.beam_count + 2 * (size_t)n, sizeof *axial);
+    kx = axial + frame.beam_count, gx = kx + n;
+    for (i = 0; i < frame.beam_count; ++i) axial[i] = gprojx_beam_state_of(&frame, i).axial;
+    GPROJT_REQUIRE(gprojx_frame_buckle(&frame, axial, &one) == GPROJ_OK && one.converged && one.shape);
+    gprojx_frame_multiply(&frame, NULL, one.shape, kx);
+    gprojx_frame_multiply(&frame, axial, one.shape, gx);
+    for (i = 0; i < n; ++i) {
+        if (frame.held[i]) continue;
+        most = fmax(most, fabs(kx[i])), rest = fmax(rest, fabs(kx[i] + one.factor[0] * gx[i]));
+    }
+    GPROJT_CHECK(rest < 1e-6 * most && one.factor[0] > 0);
+    for (i = 0; i < frame.beam_count; ++i) axial[i] *= 2;
+    GPROJT_REQUIRE(gprojx_frame_buckle(&frame, axial, &two) == GPROJ_OK && two.converged);
+    for (i = 0; i < GPROJX_WANTED; ++i) GPROJT_CHECK(near(two.factor[i], one.factor[i] / 2, 0, 1e-10));
+    free(one.shape), free(two.shape), free(axial);
+    gprojx_frame_destroy(&frame);
+}
+
 int main(void) {
     GPROJT_RUN(frame_sections);
     GPROJT_RUN(frame_skew_cantilever);
@@ -469,5 +497,6 @@ int main(void) {
     GPROJT_RUN(frame_parabolic_arch);
     GPROJT_RUN(frame_euler_columns);
     GPROJT_RUN(frame_buckling_clusters);
+    GPROJT_RUN(frame_buckling_shape);
     return gprojt_report();
 }

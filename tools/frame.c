@@ -39,7 +39,7 @@ typedef struct tool_edge { /* a beam along an edge of the mesh */
     double bending, torsion;   /* the largest of either sign */
     double utilisation;        /* largest (|N|/A + M/W) over the yield stress */
     double euler, euler_share; /* pi^2 E min(Iy, Iz) / L^2, and the compression over it (tension: 0) */
-    double form_force;         /* compression in the form, its units */
+    double form_force;         /* compression in the form, in the form's units */
 } tool_edge;
 
 /* Axial forces beside those of the form, over the edges that are not held at both ends. */
@@ -55,7 +55,7 @@ typedef struct tool_extremes {
     int32_t moved, pressed; /* vertices with the largest displacement and reaction */
     int32_t compressed, pulled, bent, twisted, used, near_euler; /* edges */
     int32_t in_tension;                                          /* edges */
-    double weight, load[3], reaction[3];                         /* sums: the beams' own, at vertices, of supports */
+    double weight, load[3], reaction[3];                         /* sums: own weight, at vertices, of supports */
 } tool_extremes;
 
 typedef struct tool {
@@ -186,9 +186,9 @@ static const tool_option options[] = {
     {"mean-edge", "L", "instead of --scale: the mean edge is L metres long", set_positive, offsetof(tool, mean_edge)},
     {"loads", "FILE", "forces on vertices in N: CSV, lines VERTEX,FX,FY,FZ", set_text, offsetof(tool, loads)},
     {"pinned", "WHICH",
-     "vertices that turn, but cannot move. WHICH: boundary, a list\n"
-     "such as 0,7,20-29, or a file of such numbers. Where nothing is\n"
-     "said to be held: the supports of --forces, else boundary",
+     "vertices that turn, but cannot move. WHICH: boundary, corners,\n"
+     "a list such as 0,7,20-29, or a file of such numbers. Without\n"
+     "any such option: the supports of --forces, else boundary",
      add_support, 0},
     {"fixed", "WHICH", "vertices that neither move nor turn", add_support, 0},
     {"roller", "WHICH", "vertices that cannot move in z", add_support, 0},
@@ -226,11 +226,11 @@ static void print_help(void) {
             printf("%*s%.*s\n", width < 25 ? 25 - width : 1, "", (int)strcspn(line, "\n"), line);
     }
     puts("\nexamples\n"
-         "  frame vault.obj --section tube:0.08,0.004 --picture vault.svg\n"
          "  guidedproj roof.obj -o vault.obj --equilibrium --compressive --fix boundary \\\n"
          "      --forces forces.csv\n"
+         "  frame vault.obj --section tube:0.08,0.004 --picture vault.svg\n"
          "  frame vault.obj --forces forces.csv --fixed boundary --report vault.json\n"
-         "  frame bridge.obj --scale 0.001 --pinned 0,7 --roller 40-47 --loads snow.csv\n\n"
+         "  frame vault.obj --scale 0.5 --pinned 0,20 --roller 420-440 --loads snow.csv\n\n"
          "exit status\n"
          "  0 analysed   2 wrong usage   3 input refused, a mechanism, or writing failed\n"
          "  4 out of memory");
@@ -284,16 +284,19 @@ static char *load_text(tool *t, const char *path) {
     return NULL;
 }
 
-/* Marks the vertices of boundary, a list, or a file. */
+/* Marks the vertices of boundary, corners, a list, or a file. */
 static bool mark_vertices(tool *t, const tool_support *support, bool *mark) {
     const char *which = support->which;
     gproj_error error;
     bool list = strspn(which, "0123456789,- ") == strlen(which);
     char *text = NULL, where[64];
     int32_t v;
-    if (strcmp(which, "boundary") == 0) {
-        for (v = 0; v < t->mesh->vertex_count; ++v) mark[v] = gproj_mesh_is_boundary_vertex(t->mesh, v);
-        return true;
+    if (strcmp(which, "boundary") == 0 || strcmp(which, "corners") == 0) {
+        gproj_form *form = gproj_form_create(t->mesh, NULL); /* knows the corners */
+        for (v = 0; form && v < t->mesh->vertex_count; ++v)
+            mark[v] = which[0] == 'b' ? gproj_mesh_is_boundary_vertex(t->mesh, v) : gproj_form_is_corner(form, v);
+        gproj_form_destroy(form);
+        return form || fail(t, EXIT_MEMORY, "out of memory");
     }
     snprintf(where, sizeof where, "--%s %.40s", support->option, which);
     if (!list) text = load_text(t, which);
@@ -592,7 +595,7 @@ static gproj_code draw(tool *t, FILE *file) {
         high = fmax(high, used[f]);
     }
     for (e = 0; force && e < mesh->edge_count; ++e) force[e] = t->edge[e].compression / 1000;
-    snprintf(title, sizeof title, "%.120s: utilisation of its beams", file_name(t->input));
+    snprintf(title, sizeof title, "%.120s: utilisation of the beams", file_name(t->input));
     snprintf(caption, sizeof caption, "%.60s m \xc2\xb7 at most %.3g %% of %.4g MPa \xc2\xb7 edges: axial forces in kN",
              t->section_text, high, t->material.yield / 1e6);
     picture.title = title, picture.caption = caption;

@@ -9,7 +9,7 @@
 
    A node has six degrees of freedom: displacements along and rotations about the global x, y, z. Beams are those of
    Euler and Bernoulli, with St. Venant's torsion, and no shear deformation or warping [Przemieniecki 1968, chapter 5].
-   Units are whatever is consistent, such as N and m. frame_buckling.h goes on from here.
+   Units are consistent ones, such as N and m. frame_buckling.h goes on from here.
 
    Include guidedproj.h before this file. Memory by malloc; no global state. */
 #ifndef GPROJX_FRAME_H
@@ -113,8 +113,8 @@ typedef struct gprojx_beam {
 } gprojx_beam;
 
 /* A beam from point a to point b, without load and nodes. Local z is `up` without the part along the beam (the height
-   of its section stands so), local y = z cross x. Where `up` is along the beam, the global axis least along it is
-   taken. */
+   of its section stands so), local y = z cross x. If `up` is along the beam, the global axis least along it is taken.
+   */
 static gprojx_beam gprojx_beam_between(const double a[3], const double b[3], const double up[3],
                                        const gprojx_section *section, const gprojx_material *material) {
     gprojx_beam beam;
@@ -203,7 +203,7 @@ static void gprojx_beam_stiffness(const gprojx_beam *beam, double k[12][12]) {
                 for (j = 0; j < 12; ++j) k[i][j] += mode[p][i] * d[p][q] * mode[q][j];
 }
 
-/* Nodal forces and moments that do the work of the beam's load in all its cubic shapes: half of it at each end, and the
+/* Nodal forces and moments that do the work of the beam's load in all cubic shapes: half of it at each end, and the
    moments x cross q L^2/12 at node[0] and the opposite at node[1]. */
 static void gprojx_beam_loads(const gprojx_beam *beam, double load[12]) {
     double moment[3];
@@ -224,7 +224,7 @@ typedef struct gprojx_frame {
     bool *held;       /* 6 a node: motions that a support prevents */
     double *load;     /* 6 a node: forces and moments, without the loads of the beams */
     double *motion;   /* 6 a node: displacements and rotations (radians) */
-    double *reaction; /* 6 a node: forces and moments of the supports on the frame; 0 where nothing is held */
+    double *reaction; /* 6 a node: forces and moments of the supports on the frame; 0 at motions that are not held */
     /* For the solve: */
     gproj_cholesky *cholesky;
     int32_t unknowns;
@@ -524,16 +524,16 @@ static void gprojx_beam_forces_at(const gprojx_beam_state *s, double at, double 
     out[2] = (1 - at) * s->mz[0] + at * s->mz[1] - sag * s->load[1];
 }
 
-/* Where the moment with these end values and second derivative -load has its extreme, as a part of the length; 0 or 1
-   where that is at an end. */
+/* Returns the part of the length at which the moment with these end values and the second derivative -load is extreme;
+   0 or 1: at an end. */
 static double gprojx_beam_extreme(const double end[2], double load, double length) {
     double at = 0.5 + (end[1] - end[0]) / (load * length * length);
     return at > 0 && at < 1 ? at : end[0] * end[0] < end[1] * end[1];
 }
 
 /* The largest bending moment along a beam (of the vector of both), and the largest |N|/A + M/W. For round sections
-   M/W is that of the vector, for others the sum about both axes. Looks at 16ths of the length and where My and Mz are
-   extreme. */
+   M/W is that of the vector, for others the sum about both axes. Looks at 16ths of the length and at the extremes
+   of My and Mz. */
 static void gprojx_beam_largest(const gprojx_beam_state *state, const gprojx_section *section, double *bending,
                                 double *stress) {
     double force[3], at;

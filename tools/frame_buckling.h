@@ -17,8 +17,8 @@
 #include "frame.h"
 
 enum {
-    GPROJX_WANTED = 4,     /* factors; as many equal ones are told apart */
-    GPROJX_DIMENSION = 32, /* of the subspace, before it is cut to its best half */
+    GPROJX_WANTED = 4,     /* factors; up to four equal ones are found */
+    GPROJX_DIMENSION = 32, /* of the subspace, before the better half is kept */
     GPROJX_ROUNDS = 400
 };
 
@@ -37,7 +37,7 @@ typedef struct gprojx_subspace {
     size_t motions;
     int count;
     double *v, *kv, *gv;
-    double *spare; /* room for as many columns more */
+    double *spare; /* room for GPROJX_DIMENSION columns more */
     double h[GPROJX_DIMENSION][GPROJX_DIMENSION], y[GPROJX_DIMENSION][GPROJX_DIMENSION];
 } gprojx_subspace;
 
@@ -72,7 +72,7 @@ static void gprojx_jacobi(int n, double h[][GPROJX_DIMENSION], double y[][GPROJX
             }
 }
 
-/* Multiplies a vector by K or by -G, and leaves zeros where nothing can move. */
+/* Multiplies a vector by K or by -G, and leaves zeros at motions that are held. */
 static void gprojx_subspace_multiply(const gprojx_subspace *s, bool geometric, const double *x, double *out) {
     size_t i;
     gprojx_frame_multiply(s->frame, geometric ? s->axial : NULL, x, out);
@@ -170,8 +170,8 @@ static gproj_code gprojx_subspace_run(gprojx_subspace *s, gprojx_buckling *resul
     return GPROJ_OK;
 }
 
-/* Finds the smallest positive factors of a solved frame. axial: the axial force of each beam, tension > 0. Where no
-   beam is in compression there is none. */
+/* Finds the smallest positive factors of a solved frame. axial: the axial force of each beam, tension > 0. There is
+   none if no beam is in compression. */
 static gproj_code gprojx_frame_buckle(gprojx_frame *frame, const double *axial, gprojx_buckling *result) {
     gprojx_subspace *s = (gprojx_subspace *)calloc(1, sizeof *s);
     size_t block = 6 * (size_t)frame->node_count * GPROJX_DIMENSION;

@@ -1,4 +1,4 @@
-/* readers.h - what the command lines read: numbers, lists of vertices, loads, whole files.
+/* readers.h - reads numbers, lists of vertices, loads and whole files, for the command lines.
 
    Those that can refuse return false or NULL and say why in `error`, without the name of the file or option. Include
    guidedproj.h before this file. */
