@@ -62,13 +62,13 @@ GPROJT_TEST(frame_sections) {
 
 /* A tip force and moment on a clamped beam of three pieces in a skew direction: beam theory in the local frame. */
 GPROJT_TEST(frame_skew_cantilever) {
-    const double a[3] = {0.3, -0.2, 0.1}, b[3] = {1.3, 1.8, 2.1}, force[3] = {700, -400, 900},
+    const double a[3] = {0.3, -0.2, 0.1}, b[3] = {1.8, 2.8, 3.1}, force[3] = {700, -400, 900},
                  moment[3] = {50, 80, -30};
     gprojx_section section = gprojx_section_rectangle(0.05, 0.08);
     gprojx_frame frame;
     int32_t beams = 0;
     int k, j;
-    double l = 3, f[3], m[3], u[3], r[3];
+    double l = 4.5, f[3], m[3], u[3], r[3];
     GPROJT_REQUIRE(gprojx_frame_create(&frame, 4, 3));
     add_line(&frame, &beams, a, b, 3, 0, 1, 3, &section, NULL);
     hold(&frame, 0, "012345");
@@ -142,6 +142,37 @@ GPROJT_TEST(frame_clamped_beam) {
         gprojx_beam_forces_at(&s, 1, out);
         GPROJT_CHECK(fabs(out[0]) < 1e-10 * w * l);
         GPROJT_CHECK(near(frame.motion[8], -w * l * l / (2 * steel.young * section.area), 0, 1e-10));
+        gprojx_frame_destroy(&frame);
+    }
+}
+
+/* A simply supported beam with the load q along local z, or along local y, and the moment 0.1 q L^2 at its end: the
+   moment q x (L - x) / 2 + 0.1 q L x is largest at 0.6 L, 0.18 q L^2. Both together add up in a rectangle, and as
+   vectors in a circle. */
+GPROJT_TEST(frame_largest_moment) {
+    const double a[3] = {0, 0, 0}, b[3] = {3, 0, 0};
+    double q = 400, m = 0.18 * q * 9, bending, stress, want;
+    int kind;
+    for (kind = 0; kind < 6; ++kind) {
+        bool along_z = kind % 3 != 1, along_y = kind % 3 != 0;
+        gprojx_section section = kind < 3 ? gprojx_section_rectangle(0.05, 0.08) : gprojx_section_circle(0.06);
+        gprojx_beam_state s;
+        gprojx_frame frame;
+        int32_t beams = 0;
+        double load[3] = {0, 0, 0};
+        load[1] = along_y ? -q : 0, load[2] = along_z ? -q : 0;
+        GPROJT_REQUIRE(gprojx_frame_create(&frame, 2, 1));
+        add_line(&frame, &beams, a, b, 1, 0, 0, 1, &section, load);
+        hold(&frame, 0, "0123"), hold(&frame, 1, "12");
+        /* A load along -z makes the inner My negative, one along -y makes Mz positive. */
+        frame.load[10] = along_z ? -0.1 * q * 9 : 0, frame.load[11] = along_y ? 0.1 * q * 9 : 0;
+        GPROJT_REQUIRE(solve(&frame));
+        s = gprojx_beam_state_of(&frame, 0);
+        gprojx_beam_largest(&s, &section, &bending, &stress);
+        want = section.round ? (along_z && along_y ? sqrt(2.0) : 1) / section.wy
+                             : (along_z ? 1 / section.wy : 0) + (along_y ? 1 / section.wz : 0);
+        GPROJT_CHECK(near(bending, m * (along_z && along_y ? sqrt(2.0) : 1), 0, 1e-10));
+        GPROJT_CHECK(near(stress, m * want, 0, 1e-10));
         gprojx_frame_destroy(&frame);
     }
 }
@@ -314,10 +345,15 @@ GPROJT_TEST(frame_mechanisms) {
     gprojx_frame frame;
     gproj_error error;
     int32_t beams = 0, v;
-    GPROJT_REQUIRE(grid_frame(&frame, straight, &section));
-    for (v = 0; v < 6 * frame.node_count; ++v) frame.held[v] = false;
-    GPROJT_CHECK(gprojx_frame_solve(&frame, &error) == GPROJ_ERROR_DEGENERATE && strstr(error.message, "vertex "));
-    gprojx_frame_destroy(&frame);
+    int turn;
+    for (turn = 0; turn < 12; ++turn) { /* rounding lets some of these be factored */
+        double c = cos(turn), d = sin(turn);
+        const double turned[3][3] = {{c, -d, 0}, {d, c, 0}, {0, 0, 1}};
+        GPROJT_REQUIRE(grid_frame(&frame, turned, &section));
+        for (v = 0; v < 6 * frame.node_count; ++v) frame.held[v] = false;
+        GPROJT_CHECK(gprojx_frame_solve(&frame, &error) == GPROJ_ERROR_DEGENERATE && strstr(error.message, "vertex "));
+        gprojx_frame_destroy(&frame);
+    }
     GPROJT_REQUIRE(grid_frame(&frame, straight, &section));
     for (v = 0; v < 6 * frame.node_count; ++v) frame.held[v] = v % 6 == 2;
     GPROJT_CHECK(gprojx_frame_solve(&frame, &error) == GPROJ_ERROR_DEGENERATE &&
@@ -456,6 +492,25 @@ GPROJT_TEST(frame_buckling_clusters) {
     gprojx_frame_destroy(&frame);
 }
 
+/* One beam, clamped below and guided above, has two ways to buckle, by end rotations: 30 EI / L^2. Other factors: none. */
+GPROJT_TEST(frame_buckling_few) {
+    gprojx_section section = gprojx_section_rectangle(0.03, 0.05);
+    const double a[3] = {0, 0, 0}, b[3] = {0, 0, 3};
+    double axial = -1;
+    gprojx_buckling buckling;
+    gprojx_frame frame;
+    int32_t beams = 0;
+    GPROJT_REQUIRE(gprojx_frame_create(&frame, 2, 1));
+    add_line(&frame, &beams, a, b, 1, 0, 0, 1, &section, NULL);
+    hold(&frame, 0, "012345"), hold(&frame, 1, "01");
+    GPROJT_REQUIRE(solve(&frame) && gprojx_frame_buckle(&frame, &axial, &buckling) == GPROJ_OK);
+    GPROJT_CHECK(buckling.converged && near(buckling.factor[0], 30 * steel.young * section.iz / 9, 0, 1e-10));
+    GPROJT_CHECK(near(buckling.factor[1], 30 * steel.young * section.iy / 9, 0, 1e-10));
+    GPROJT_CHECK(isinf(buckling.factor[2]) && isinf(buckling.factor[3]));
+    free(buckling.shape);
+    gprojx_frame_destroy(&frame);
+}
+
 /* The shape of a frame with all kinds of forces and the factor make K x + f G x vanish; twice the forces give half the
    factor. */
 GPROJT_TEST(frame_buckling_shape) {
@@ -488,6 +543,7 @@ int main(void) {
     GPROJT_RUN(frame_sections);
     GPROJT_RUN(frame_skew_cantilever);
     GPROJT_RUN(frame_clamped_beam);
+    GPROJT_RUN(frame_largest_moment);
     GPROJT_RUN(frame_portal);
     GPROJT_RUN(frame_rigid_motions);
     GPROJT_RUN(frame_stiffness_matrix);
@@ -497,6 +553,7 @@ int main(void) {
     GPROJT_RUN(frame_parabolic_arch);
     GPROJT_RUN(frame_euler_columns);
     GPROJT_RUN(frame_buckling_clusters);
+    GPROJT_RUN(frame_buckling_few);
     GPROJT_RUN(frame_buckling_shape);
     return gprojt_report();
 }
