@@ -311,6 +311,25 @@ GPROJT_TEST(frame_reciprocity) {
     gprojx_frame_destroy(&one), gprojx_frame_destroy(&two);
 }
 
+/* A frame may be solved again, with other loads and supports. */
+GPROJT_TEST(frame_again) {
+    gprojx_section section = gprojx_section_rectangle(0.02, 0.03);
+    gprojx_frame frame;
+    double before, after;
+    int32_t v, last;
+    GPROJT_REQUIRE(grid_frame(&frame, straight, &section) && solve(&frame));
+    last = 6 * (frame.node_count - 1);
+    before = frame.motion[last + 2];
+    for (v = 0; v < frame.beam_count; ++v) frame.beam[v].load[2] *= 2;
+    GPROJT_REQUIRE(solve(&frame));
+    GPROJT_CHECK(near(frame.motion[last + 2], 2 * before, 0, 1e-10));
+    hold(&frame, frame.node_count - 1, "012");
+    GPROJT_REQUIRE(solve(&frame));
+    after = frame.reaction[last + 2];
+    GPROJT_CHECK(fabs(frame.motion[last + 2]) <= 0 && after > 0);
+    gprojx_frame_destroy(&frame);
+}
+
 /* A rotated frame moves as before, rotated; supports bear the weight. */
 GPROJT_TEST(frame_rotation) {
     gprojx_section section = gprojx_section_rectangle(0.02, 0.03);
@@ -549,6 +568,7 @@ int main(void) {
     GPROJT_RUN(frame_rigid_motions);
     GPROJT_RUN(frame_stiffness_matrix);
     GPROJT_RUN(frame_reciprocity);
+    GPROJT_RUN(frame_again);
     GPROJT_RUN(frame_rotation);
     GPROJT_RUN(frame_mechanisms);
     GPROJT_RUN(frame_parabolic_arch);

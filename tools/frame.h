@@ -338,6 +338,8 @@ static void gprojx_frame_enter(gprojx_frame *frame, int pass, int64_t *next) {
 static bool gprojx_frame_assemble(gprojx_frame *frame) {
     int64_t *next;
     int32_t j;
+    free(frame->start), free(frame->row), free(frame->value), free(frame->side); /* of an earlier solve */
+    frame->row = NULL, frame->value = NULL;
     gprojx_frame_number(frame);
     frame->start = (int64_t *)calloc((size_t)frame->unknowns + 1, sizeof *frame->start);
     frame->side = (double *)calloc((size_t)frame->unknowns + 1, sizeof *frame->side);
@@ -409,7 +411,7 @@ static double gprojx_frame_easiest(gprojx_frame *frame, double *x, double *work)
 /* Says which node moves the most in x, and how. */
 static gproj_code gprojx_frame_name_mechanism(const gprojx_frame *frame, const double *x, gproj_error *error) {
     const char *how = "moves";
-    double most = 0, turn = 0;
+    double most = 0, turn = 0, direction[3];
     int32_t v, best = 0, turned = 0;
     for (v = 0; v < frame->node_count; ++v) {
         double moved = gprojx_length3(x + 6 * (size_t)v), rotated = gprojx_length3(x + 6 * (size_t)v + 3);
@@ -418,10 +420,11 @@ static gproj_code gprojx_frame_name_mechanism(const gprojx_frame *frame, const d
     }
     if (!(most > 1e-6 * turn * frame->beam[0].length)) how = "turns", best = turned, most = turn;
     x += 6 * (size_t)best + (how[0] == 't' ? 3 : 0);
+    for (v = 0; v < 3; ++v) direction[v] = fabs(x[v]) < 5e-3 * most ? 0 : x[v] / most;
     error->code = GPROJ_ERROR_DEGENERATE, error->place = GPROJ_PLACE_VERTEX, error->index = best;
     snprintf(error->message, sizeof error->message,
              "the frame is a mechanism: vertex %ld %s freely %s (%.2g, %.2g, %.2g); hold it by more supports",
-             (long)best, how, how[0] == 't' ? "about" : "along", x[0] / most, x[1] / most, x[2] / most);
+             (long)best, how, how[0] == 't' ? "about" : "along", direction[0], direction[1], direction[2]);
     return error->code;
 }
 
@@ -450,10 +453,6 @@ static gproj_code gprojx_frame_prepare(gprojx_frame *frame, gproj_error *error) 
         }
     }
     free(x);
-    if (code != GPROJ_OK && error->code == GPROJ_OK) {
-        error->code = code;
-        snprintf(error->message, sizeof error->message, "%s", gproj_code_string(code));
-    }
     return code;
 }
 
@@ -461,13 +460,14 @@ static gproj_code gprojx_frame_prepare(gprojx_frame *frame, gproj_error *error) 
    stays, for gprojx_frame_apply_inverse. */
 static gproj_code gprojx_frame_solve(gprojx_frame *frame, gproj_error *error) {
     size_t motions = 6 * (size_t)frame->node_count, i;
-    double *load = (double *)malloc((3 * motions + 1) * sizeof *load), *rest = load + motions, *step = rest + motions;
+    double *load = (double *)malloc((3 * motions + 1) * sizeof *load), *rest, *step;
     gproj_code code;
     int round;
     memset(error, 0, sizeof *error);
     error->index = -1;
     code = load ? gprojx_frame_prepare(frame, error) : GPROJ_ERROR_MEMORY;
     if (code == GPROJ_OK) {
+        rest = load + motions, step = rest + motions;
         gprojx_frame_loads(frame, load);
         memset(frame->motion, 0, motions * sizeof *frame->motion);
         /* The first round solves, the others refine. */
@@ -481,6 +481,10 @@ static gproj_code gprojx_frame_solve(gprojx_frame *frame, gproj_error *error) {
         for (i = 0; i < motions; ++i) frame->reaction[i] = frame->held[i] ? -rest[i] : 0;
     }
     free(load);
+    if (code != GPROJ_OK && error->code == GPROJ_OK) {
+        error->code = code;
+        snprintf(error->message, sizeof error->message, "%s", gproj_code_string(code));
+    }
     return code;
 }
 
