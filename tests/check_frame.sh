@@ -101,6 +101,7 @@ refuses 3 'No such file' vault.obj --fixed nothing.txt
 refuses 3 'nothing.obj' nothing.obj
 refuses 3 'is a mechanism: vertex ' vault.obj --roller boundary
 refuses 3 'is a mechanism: vertex ' square.obj --pinned 0
+refuses 3 'wrong units?' vault.obj --gravity 1e200
 refuses 3 'cannot be written' vault.obj --report nowhere/r.json
 
 # Equilibrium of the form: beams have nearly these forces. On Intersection, whose faces are planar (the paper, section 4):

@@ -477,7 +477,7 @@ static void measure_edge(tool *t, int32_t e) {
     edge->euler_share = fmax(0, edge->compression) / edge->euler;
 }
 
-/* Is the vertex held against all displacements? */
+/* Tells whether the vertex is held against all displacements. */
 static bool is_held(const tool *t, int32_t vertex) {
     const bool *held = t->frame.held + 6 * (size_t)vertex;
     return held[0] && held[1] && held[2];
@@ -560,6 +560,9 @@ static bool analyse(tool *t) {
     if (!(sum_of_loads(t) > 0))
         return fail(t, EXIT_USAGE, "nothing loads the frame: neither --density and --gravity nor --loads");
     if (gprojx_frame_solve(&t->frame, &error) != GPROJ_OK) return fail_error(t, t->input, ": ", &error);
+    if (!(gprojx_frame_dot(6 * (size_t)t->frame.node_count, t->frame.motion, t->frame.motion) < 1e200) ||
+        !(gprojx_frame_dot(6 * (size_t)t->frame.node_count, t->frame.reaction, t->frame.reaction) < 1e200))
+        return fail(t, EXIT_REFUSED, "%s: displacements or reactions beyond 1e100: wrong units?", t->input);
     for (e = 0; e < t->mesh->edge_count; ++e) measure_edge(t, e);
     find_extremes(t);
     if (t->forces && !compare(t)) return false;

@@ -135,8 +135,8 @@ static bool gprojx_read_loads(const char *text, int32_t vertex_count, double *lo
 
 /* ---- files ---- */
 
-/* A file of at most `megabytes` with a NUL behind it, by malloc; `length` does not count that. A `text` is read up to its
-   first zero byte, which no text has: devices give such bytes without end. */
+/* Returns a file of at most `megabytes` with a NUL behind it, by malloc; `length` does not count that. A `text` is read up
+   to the first zero byte, which no text has: devices give such bytes without end. */
 static char *gprojx_load_file(const char *path, bool text, int32_t megabytes, size_t *length, gproj_error *error) {
     FILE *file = fopen(path, "rb");
     size_t size = 0, capacity = 0, got = 0, most = (size_t)megabytes << 20;
