@@ -29,6 +29,7 @@
 #include <unistd.h>
 
 #include "picture.h"
+#include "readers.h"
 #include "report.h"
 #include "threads.h"
 
@@ -216,35 +217,17 @@ static bool same_word(const char *text, size_t size, const char *word) {
     return strlen(word) == size && memcmp(text, word, size) == 0;
 }
 
-/* Reads text[0..size-1], all of which must be one finite number. */
-static bool read_number(const char *text, size_t size, double *value) {
-    return size > 0 && gproj_number_read(text, size, value) == size && fabs(*value) <= 1.7976931348623157e308;
-}
-
-/* Reads text[0..size-1], all of which must be a whole number in low..high. */
-static bool read_integer(const char *text, size_t size, int32_t low, int32_t high, int32_t *value) {
-    int64_t sum = 0;
-    size_t i;
-    for (i = 0; i < size; ++i) {
-        if (text[i] < '0' || text[i] > '9') return false;
-        if (sum <= INT32_MAX) sum = 10 * sum + (text[i] - '0');
-    }
-    if (size == 0 || sum < low || sum > high) return false;
-    *value = (int32_t)sum;
-    return true;
-}
-
 /* Reads W[*DECAY][:N]; leaves the demand alone if that fails. */
 static bool read_schedule(const char *text, size_t size, tool_demand *demand) {
     const char *colon = (const char *)memchr(text, ':', size), *star;
     double weight, decay = 1;
     int32_t last = 0;
     size_t body = colon ? (size_t)(colon - text) : size, first;
-    if (colon && !read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
+    if (colon && !gprojx_read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
     star = (const char *)memchr(text, '*', body);
     first = star ? (size_t)(star - text) : body;
-    if (!read_number(text, first, &weight) || weight < 0) return false;
-    if (star && !read_number(star + 1, body - first - 1, &decay)) return false;
+    if (!gprojx_read_number(text, first, &weight) || weight < 0) return false;
+    if (star && !gprojx_read_number(star + 1, body - first - 1, &decay)) return false;
     if (decay <= 0 || decay > 1) return false;
     demand->given = true;
     demand->weight = weight, demand->decay = decay, demand->last = last;
@@ -341,7 +324,7 @@ static bool set_output(tool *t, void *place, const char *name, const char *value
 static bool set_offset(tool *t, void *place, const char *name, const char *value) {
     const char *comma = strchr(value, ',');
     ((tool_output *)place)->path = comma ? comma + 1 : NULL;
-    return (comma && comma[1] && read_number(value, (size_t)(comma - value), &t->offset_distance) &&
+    return (comma && comma[1] && gprojx_read_number(value, (size_t)(comma - value), &t->offset_distance) &&
             fabs(t->offset_distance) > 0) ||
            fail_value(t, name, value,
                       "DISTANCE,FILE: a distance other than 0, and where to write (as in 0.3,offset.obj)");
@@ -351,7 +334,7 @@ static bool set_offset(tool *t, void *place, const char *name, const char *value
 static bool set_must(tool *t, void *place, const char *name, const char *value) {
     tool_demand *demand = (tool_demand *)place;
     demand->given = true, demand->weight = 1;
-    return !value || (read_number(value, strlen(value), &demand->weight) && demand->weight >= 0) ||
+    return !value || (gprojx_read_number(value, strlen(value), &demand->weight) && demand->weight >= 0) ||
            fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number, 0 or larger", name, value);
 }
 
@@ -368,7 +351,7 @@ static bool set_wish(tool *t, void *place, const char *name, const char *value) 
 static bool read_amount(const char *text, tool_demand *demand) {
     demand->given = true, demand->weight = 1;
     demand->factor = text[0] == 'x';
-    return read_number(text + demand->factor, strlen(text + demand->factor), &demand->amount);
+    return gprojx_read_number(text + demand->factor, strlen(text + demand->factor), &demand->amount);
 }
 
 static bool set_volume(tool *t, void *place, const char *name, const char *value) {
@@ -390,8 +373,8 @@ static bool read_range(const char *value, tool_demand *range) {
     word.min = range->min, word.max = range->max;
     *range = word;
     return first + rest > 0 && has_constant_weight(range) &&
-           (first == 0 || read_number(word.text, first, &range->min)) &&
-           (rest == 0 || read_number(comma + 1, rest, &range->max)) &&
+           (first == 0 || gprojx_read_number(word.text, first, &range->min)) &&
+           (rest == 0 || gprojx_read_number(comma + 1, rest, &range->max)) &&
            (first == 0 || rest == 0 || range->min <= range->max);
 }
 
@@ -414,8 +397,8 @@ static bool set_stress(tool *t, void *place, const char *name, const char *value
 static bool set_cost(tool *t, void *place, const char *name, const char *value) {
     const char *first = strchr(value, ','), *second = first ? strchr(first + 1, ',') : NULL;
     tool_demand *cost = (tool_demand *)place;
-    if (second && read_number(value, (size_t)(first - value), &t->length_price) &&
-        read_number(first + 1, (size_t)(second - first - 1), &t->area_price) && read_amount(second + 1, cost) &&
+    if (second && gprojx_read_number(value, (size_t)(first - value), &t->length_price) &&
+        gprojx_read_number(first + 1, (size_t)(second - first - 1), &t->area_price) && read_amount(second + 1, cost) &&
         t->length_price >= 0 && t->area_price >= 0 && t->length_price + t->area_price > 0 && cost->amount > 0)
         return true;
     return fail_value(t, name, value,
@@ -425,7 +408,7 @@ static bool set_cost(tool *t, void *place, const char *name, const char *value) 
 
 static bool set_load(tool *t, void *place, const char *name, const char *value) {
     t->loads_given = true;
-    return read_number(value, strlen(value), (double *)place) || fail_value(t, name, value, "a number");
+    return gprojx_read_number(value, strlen(value), (double *)place) || fail_value(t, name, value, "a number");
 }
 
 static bool set_loads_file(tool *t, void *place, const char *name, const char *value) {
@@ -441,12 +424,12 @@ static bool set_supports(tool *t, void *place, const char *name, const char *val
 }
 
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
-    return (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) ||
+    return (gprojx_read_number(value, strlen(value), (double *)place) && *(double *)place > 0) ||
            fail_value(t, name, value, "a number larger than 0");
 }
 
 static bool read_count(tool *t, int32_t *count, const char *name, const char *value, int32_t low, int32_t high) {
-    return read_integer(value, strlen(value), low, high, count) ||
+    return gprojx_read_integer(value, strlen(value), low, high, count) ||
            fail(t, EXIT_USAGE, "--%s %s: expected a whole number from %d to %d", name, value, (int)low, (int)high);
 }
 
@@ -470,7 +453,7 @@ static bool set_subdivision(tool *t, void *place, const char *name, const char *
     size_t size = strcspn(value, ",");
     bool loop = strcmp(value + size, ",loop") == 0;
     subdivision->scheme = loop ? GPROJ_LOOP : GPROJ_CATMULL_CLARK;
-    return (read_integer(value, size, 1, MOST_LEVELS, &subdivision->levels) && (loop || !value[size])) ||
+    return (gprojx_read_integer(value, size, 1, MOST_LEVELS, &subdivision->levels) && (loop || !value[size])) ||
            fail(t, EXIT_USAGE, "--%s %s: expected a whole number from 1 to %d, with ,loop for triangles", name, value,
                 MOST_LEVELS);
 }
@@ -480,7 +463,7 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
     const char *at = value;
     for (;; ++at) {
         size_t size = strcspn(at, ",");
-        if (sides->count == MOST_SIDES || !read_integer(at, size, 1, 100000, &sides->edges[sides->count]))
+        if (sides->count == MOST_SIDES || !gprojx_read_integer(at, size, 1, 100000, &sides->edges[sides->count]))
             return fail_value(t, name, value, "N,N,...: a number of edges for each side");
         sides->count++;
         at += size;
@@ -490,14 +473,14 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
 
 static bool set_lift(tool *t, void *place, const char *name, const char *value) {
     double *lift = (double *)place;
-    return (read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) ||
+    return (gprojx_read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) ||
            fail_value(t, name, value, "a height, not 0, of at most 1e50");
 }
 
 static bool set_weld(tool *t, void *place, const char *name, const char *value) {
     double *weld = (double *)place;
     *weld = SAME_PLACE;
-    return !value || (read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1) ||
+    return !value || (gprojx_read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1) ||
            fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, above 0 and at most 1", name, value);
 }
 
@@ -536,8 +519,8 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
         bool good;
         comma = (const char *)memchr(at, ',', (size_t)(end - at));
         if (!comma) comma = end;
-        good = k == 0 ? read_integer(at, (size_t)(comma - at), 0, INT32_MAX - 1, &move->vertex)
-                      : read_number(at, (size_t)(comma - at), &move->position[k - 1]);
+        good = k == 0 ? gprojx_read_integer(at, (size_t)(comma - at), 0, INT32_MAX - 1, &move->vertex)
+                      : gprojx_read_number(at, (size_t)(comma - at), &move->position[k - 1]);
         if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word))
             return fail_value(t, name, value, "I,X,Y,Z: a vertex and the three coordinates of its new place");
     }
@@ -565,8 +548,8 @@ static bool set_view(tool *t, void *place, const char *name, const char *value) 
             *view = views[i].view;
             return true;
         }
-    return (comma && read_number(value, (size_t)(comma - value), &view->azimuth) &&
-            read_number(comma + 1, strlen(comma + 1), &view->elevation) && fabs(view->azimuth) <= 3600 &&
+    return (comma && gprojx_read_number(value, (size_t)(comma - value), &view->azimuth) &&
+            gprojx_read_number(comma + 1, strlen(comma + 1), &view->elevation) && fabs(view->azimuth) <= 3600 &&
             fabs(view->elevation) <= 90) ||
            fail_value(t, name, value,
                       "iso, top, bottom, front, back, left, right, side, or AZIMUTH,ELEVATION in degrees");
@@ -754,37 +737,13 @@ static char *copy_text(tool *t, const char *text, size_t size) {
     return copy;
 }
 
-/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text has:
-   devices give such bytes without end. */
+/* See gprojx_load_file. */
 static char *load_file(tool *t, const char *path, bool text, size_t *length) {
-    FILE *file = fopen(path, "rb");
-    size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
-    char *bytes = NULL;
-    bool more = file != NULL;
-    if (!file) fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-    while (more) {
-        if (size + 1 >= capacity) {
-            char *moved = (char *)realloc(bytes, capacity = 2 * capacity + 4096);
-            if (!moved) {
-                fail_memory(t);
-                break;
-            }
-            bytes = moved;
-        }
-        got = fread(bytes + size, 1, capacity - size - 1, file);
-        more = got > 0 && !(text && memchr(bytes + size, 0, got));
-        size += got;
-        bytes[size] = 0;
-        if (ferror(file)) more = fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
-        if (size > most)
-            more = fail(t, EXIT_REFUSED, "%s: more than %ld MB, or without end; --file-limit sets how much is read",
-                        path, (long)t->file_limit);
-    }
-    if (file) fclose(file);
-    *length = size;
-    if (t->exit_code == 0) return bytes;
-    free(bytes);
-    return NULL;
+    gproj_error error;
+    char *bytes = gprojx_load_file(path, text, t->file_limit, length, &error);
+    if (!bytes && error.code == GPROJ_ERROR_MEMORY) fail_memory(t);
+    if (!bytes) fail(t, EXIT_REFUSED, "%s: %s", path, error.message);
+    return bytes;
 }
 
 /* A text that is no mesh. */
@@ -1090,27 +1049,11 @@ static bool is_moved(const tool *t, int32_t vertex) {
     return false;
 }
 
-/* Marks the vertices of a list I,J,K-L in any layout; comments go from # to the end of the line. `where` names it. */
+/* Marks the vertices of a list; `where` names it. */
 static bool mark_list(tool *t, const char *text, const char *where, int exit_code, bool *mark) {
-    const char *at = text;
-    for (;;) {
-        int32_t range[2], k;
-        while (*at == ',' || *at == '#' || isspace((unsigned char)*at)) at += *at == '#' ? strcspn(at, "\n") : 1;
-        if (!*at) return true;
-        for (k = 0; k < 2; ++k) {
-            size_t size = strspn(at, "0123456789");
-            if (size == 0) return fail(t, exit_code, "%s: expected vertices, such as 0,7,20-29, at '%.12s'", where, at);
-            if (!read_integer(at, size, 0, t->mesh->vertex_count - 1, &range[k]))
-                return fail(t, exit_code, "%s: there is no vertex %.*s; the mesh has %ld, counted from 0", where,
-                            (int)size, at, (long)t->mesh->vertex_count);
-            at += size;
-            if (k == 0 && *at != '-') range[k = 1] = range[0];
-            at += k == 0;
-        }
-        if (range[1] < range[0])
-            return fail(t, exit_code, "%s: the range %ld-%ld runs backwards", where, (long)range[0], (long)range[1]);
-        for (k = range[0]; k <= range[1]; ++k) mark[k] = true;
-    }
+    gproj_error error;
+    return gprojx_mark_list(text, t->mesh->vertex_count, mark, &error) ||
+           fail(t, exit_code, "%s: %s", where, error.message);
 }
 
 /* Fails if the value of an option is neither a word nor a file. expected: both, for the sentence. */
@@ -1284,51 +1227,14 @@ static int32_t add_volume(tool *t, const tool_demand *demand) {
     return gproj_add_volume(t->form, amount_of(demand, gproj_volume(t->mesh)), 1);
 }
 
-/* Recognises a heading: it begins with a letter, and no number stands behind the first comma. */
-static bool is_heading(const char *line, size_t size) {
-    const char *comma = (const char *)memchr(line, ',', size);
-    size_t at = comma ? (size_t)(comma - line) + 1 : size;
-    while (at < size && isspace((unsigned char)line[at])) ++at;
-    return isalpha((unsigned char)line[0]) && (at == size || !strchr("+-.0123456789", line[at]));
-}
-
-/* Reads a line VERTEX,FX,FY,FZ; skips empty lines, comments after # and a heading in the first line. */
-static bool read_load(tool *t, const char *line, size_t size, int32_t number) {
-    double field[4];
-    size_t at = 0, end;
-    int32_t k;
-    for (end = 0; end < size && line[end] != '#'; ++end) continue;
-    while (end > 0 && isspace((unsigned char)line[end - 1])) --end;
-    if (end == 0 || (number == 1 && is_heading(line, end))) return true;
-    for (k = 0; k < 4; ++k) {
-        const char *comma = (const char *)memchr(line + at, ',', end - at);
-        size_t length = comma ? (size_t)(comma - line) - at : end - at;
-        size_t next = at + length + 1;
-        while (length > 0 && isspace((unsigned char)line[at])) ++at, --length;
-        while (length > 0 && isspace((unsigned char)line[at + length - 1])) --length;
-        if ((k < 3) != (comma != NULL) || !read_number(line + at, length, &field[k])) break;
-        at = next;
-    }
-    if (k < 4) return fail(t, EXIT_REFUSED, "%s, line %ld: expected VERTEX,FX,FY,FZ", t->loads, (long)number);
-    if (!(field[0] >= 0) || field[0] >= t->mesh->vertex_count || field[0] != floor(field[0]))
-        return fail(t, EXIT_REFUSED, "%s, line %ld: there is no vertex %g; the mesh has %ld, counted from 0", t->loads,
-                    (long)number, field[0], (long)t->mesh->vertex_count);
-    for (k = 0; k < 3; ++k) t->point_load[3 * (size_t)field[0] + (size_t)k] += field[k + 1];
-    return true;
-}
-
 static bool read_loads(tool *t) {
-    char *text = load_text(t, t->loads), *line = text;
-    int32_t number = 1;
-    bool good = text != NULL;
-    if (text && strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
+    char *text = load_text(t, t->loads);
+    gproj_error error;
+    bool good;
     t->point_load = (double *)take(t, 3 * (size_t)t->mesh->vertex_count, sizeof *t->point_load);
-    good = good && t->point_load;
-    for (; good && *line; ++number) {
-        size_t size = strcspn(line, "\n");
-        good = read_load(t, line, size, number);
-        line += size + (line[size] != 0);
-    }
+    good = text && t->point_load;
+    if (good && !gprojx_read_loads(text, t->mesh->vertex_count, t->point_load, &error))
+        good = fail(t, EXIT_REFUSED, "%s, %s", t->loads, error.message);
     free(text);
     return good;
 }
@@ -1690,7 +1596,7 @@ static bool read_option(tool *t, int argc, char **argv, int *i) {
 static bool read_input_name(tool *t, const char *word, const char *before) {
     double number;
     if (!word[0]) return fail(t, EXIT_USAGE, "the input's name is empty");
-    if (read_number(word, strlen(word), &number) && before && strncmp(before, "--", 2) == 0)
+    if (gprojx_read_number(word, strlen(word), &number) && before && strncmp(before, "--", 2) == 0)
         return fail(t, EXIT_USAGE, "'%s' stands alone; a weight is written %s=%s", word, before, word);
     if (t->input) return fail(t, EXIT_USAGE, "there are two inputs, '%s' and '%s'; one is needed", t->input, word);
     if (strcmp(word, "-") == 0) return fail(t, EXIT_USAGE, "the input must be a file; there is no reading from a pipe");
