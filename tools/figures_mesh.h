@@ -1,7 +1,7 @@
 /* figures_mesh.h - the meshes of the figures: like the paper's, which are not public, in kind and size.
 
-   Cages and grids are placed by functions, subdivided, and cut along diagonals of their quads; curves are filled. A mesh
-   that cannot be made ends the program. Include guidedproj.h before this file. */
+   Cages and grids are placed by functions, subdivided, and cut along diagonals of their quads; curves are filled. If a
+   mesh cannot be made the program ends. Include guidedproj.h before this file. */
 #ifndef FIGURES_MESH_H
 #define FIGURES_MESH_H
 

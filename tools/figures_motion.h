@@ -58,12 +58,12 @@ static void make_inset(studio *s) {
     static watch roofed, funnel;
     plate p = planar_roof(s, &roofed), q = begin_plate(s, grid(32, 12, false, dented));
     FILE *file = open_picture(s, "inset");
-    report_plate(s, &p, "inset1");
+    report_plate(s, &p, "inseta");
     gproj_add_planarity(q.form, 1);
     gproj_add_circularity(q.form, 1);
     add_fairness(&q, 0.02, 0, 1, 5);
     solve_watched(s, &q, &funnel);
-    report_plate(s, &q, "inset2");
+    report_plate(s, &q, "insetb");
     if (file) {
         const gprojx_curve curve[3] = {
             {"a roof of 4,900 quads: planarity", "#d55e00", roofed.count, roofed.planarity},

@@ -81,7 +81,7 @@ static bool is_reported(const studio *s, const char *name) {
     int i;
     for (i = 0; i < TIMED_COUNT && s->table; ++i)
         if (strcmp(timed[i].name, name) == 0) return true;
-    return is_wanted(s, name) || strncmp(name, "inset", 5) == 0;
+    return is_wanted(s, name);
 }
 
 /* ---- plates ---- */

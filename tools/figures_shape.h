@@ -194,7 +194,7 @@ static void deform_figure_4(studio *s, const plate *smooth) {
     draw_plain(s, g.mesh, &(look){"4g", "Dragged: sharp and skewed", "flat panels", -60, 40});
     add_flat_panels(&h);
     add_statics(&h, 0, 1);
-    gproj_add_fairness(h.form, 0.05);
+    gproj_add_fairness(h.form, 0.02);
     solve_plate(s, &h, 200, &smoothly);
     report_plate(s, &h, "4h");
     draw_forces(s, &h,

@@ -225,7 +225,7 @@ static bool gprojx_project(gprojx_painter *p) {
     room[1] = gprojx_clamp(room[0] * size[1] / size[0], 380, 720);
     p->scale = fmin(room[0] / size[0], room[1] / size[1]);
     p->width = 1200;
-    p->height = room[1] + 210;
+    p->height = room[1] + (p->options->face_value && p->options->edge_value ? 250 : 210); /* two scales, or one */
     p->shift[0] = p->width / 2 - p->scale * (low[0] + high[0]) / 2;
     p->shift[1] = 90 + room[1] / 2 + p->scale * (low[1] + high[1]) / 2;
     p->depth_low = INFINITY, p->depth_high = -INFINITY;
@@ -1098,11 +1098,11 @@ static void gprojx_put_force_scale(gprojx_painter *p, double x, double y) {
     if (tension) {
         gprojx_put_forces(p, x, y, width, true);
         gprojx_put_force(p, x + 8, y + 26, -p->edge_most);
-        gprojx_put_words(p->file, x, y - 14, 14, "", "tension");
+        gprojx_put_words(p->file, x, y - 14, 14, "", compression ? "tension" : "axial forces: tension alone");
         x += width;
     }
     gprojx_put_force(p, x, y + 26, 0);
-    if (!compression && tension) return;
+    if (tension && !compression) return;
     gprojx_put_forces(p, x, y, width, false);
     gprojx_put_force(p, x + width / 2, y + 26, p->edge_most / 2);
     gprojx_put_force(p, x + width, y + 26, p->edge_most);
