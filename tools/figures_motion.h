@@ -117,7 +117,7 @@ static void make_drag(studio *s) {
     p.iterations = p.result.iterations;
     p.seconds = s->host.clock.now(s->host.clock.user) - moves;
     report_plate(s, &p, "drag");
-    if (!s->json && is_wanted(s, "drag"))
+    if (!s->json)
         printf("       begin %.3f s, a move %.2f ms, then the release\n", begin - begun, 10 * (moves - begin));
     draw_drag(s, &p);
     free(vertex), free(weight);

@@ -77,13 +77,6 @@ enum {
     TIMED_COUNT = sizeof timed / sizeof timed[0]
 };
 
-static bool is_reported(const studio *s, const char *name) {
-    int i;
-    for (i = 0; i < TIMED_COUNT && s->table; ++i)
-        if (strcmp(timed[i].name, name) == 0) return true;
-    return is_wanted(s, name);
-}
-
 /* ---- plates ---- */
 
 /* Begins with a mesh, which the plate owns from now on. */
@@ -186,11 +179,12 @@ static void print_record(const record *r) {
     fflush(stdout);
 }
 
-/* Notes what the plate has come to. A plate that is not exact, or spoiled, fails the run. */
+/* Notes how the plate ended, also if only other parts of its figure are wanted. One that is not exact, or spoiled, fails
+   the run. */
 static void report_plate(studio *s, const plate *p, const char *name) {
     gproj_system *system = gproj_form_system(p->form);
     record *r;
-    if (!is_reported(s, name) || s->count == MOST_RECORDS) return;
+    if (s->count == MOST_RECORDS) return;
     r = &s->record[s->count++];
     memset(r, 0, sizeof *r);
     snprintf(r->name, sizeof r->name, "%s", name);
