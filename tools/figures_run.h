@@ -179,8 +179,8 @@ static void print_record(const record *r) {
     fflush(stdout);
 }
 
-/* Notes how the plate ended, also if only other parts of its figure are wanted. One that is not exact, or spoiled, fails
-   the run. */
+/* Notes how the plate ended, also if only other parts of its figure are wanted. One that is not exact, or is spoiled,
+   makes the run fail. */
 static void report_plate(studio *s, const plate *p, const char *name) {
     gproj_system *system = gproj_form_system(p->form);
     record *r;
