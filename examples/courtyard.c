@@ -91,15 +91,15 @@ static bool design(roof *r, double volume, double force_fairness, const roof *li
 }
 
 int main(void) {
-    static roof a, b, c;
-    static const roof *const all[3] = {&a, &b, &c};
+    static roof a, b, c, *const all[3] = {&a, &b, &c};
+    static const char *const title[3] = {"A roof over a courtyard", "With even forces", "With more volume"};
     bool stands = true, planar = true;
     int k;
     if (!design(&a, 1350, 0, NULL) || !design(&b, 1350, 0.05, NULL) || !design(&c, 1.2 * 1350, 0, &a)) return 1;
     for (k = 0; k < 3; ++k) {
         char name[] = "courtyard_?.svg";
         name[10] = (char)('a' + k);
-        gprojx_picture_of_forces(name, all[k]->mesh, all[k]->density, a.forces.max_force, -62, 28);
+        gprojx_picture_of_forces(name, title[k], all[k]->mesh, all[k]->density, a.forces.max_force, -62, 28);
         memcpy(name + 12, "obj", 3);
         gproj_mesh_save(all[k]->mesh, name, NULL);
         planar = planar && all[k]->measures.planarity_max <= 1e-9 && all[k]->measures.folded_edges == 0;

@@ -95,7 +95,8 @@ int main(void) {
     printf("folded edges          %d\n", (int)gproj_measure(mesh, NULL, NULL).folded_edges);
     gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "greenhouse.obj", NULL);
-    gprojx_picture_of_forces("greenhouse.svg", mesh, density, 0, -62, 28);
+    gprojx_picture_of_forces("greenhouse.svg", "A greenhouse that stands by compression alone", mesh, density, 0, -62,
+                             28);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     return 0;

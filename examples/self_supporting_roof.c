@@ -64,7 +64,7 @@ int main(void) {
     printf("folded edges            %d\n", (int)measures.folded_edges);
     gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "self_supporting_roof.obj", NULL);
-    gprojx_picture_of_forces("self_supporting_roof.svg", mesh, density, 0, -58, 14);
+    gprojx_picture_of_forces("self_supporting_roof.svg", "A canopy on a flared foot", mesh, density, 0, -58, 14);
     gproj_form_destroy(form);
     gproj_surface_destroy(design);
     gproj_mesh_destroy(start);

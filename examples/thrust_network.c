@@ -85,7 +85,8 @@ int main(void) {
     printf("folded edges            %d\n", (int)gproj_measure(mesh, NULL, NULL).folded_edges);
     gproj_get_forces(form, density, NULL);
     gproj_mesh_save(mesh, "thrust_network.obj", NULL);
-    gprojx_picture_of_forces("thrust_network.svg", mesh, density, 0, -52, 14);
+    gprojx_picture_of_forces("thrust_network.svg", "A horn that stands by compression alone", mesh, density, 0, -52,
+                             14);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     return 0;

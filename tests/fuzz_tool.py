@@ -18,7 +18,7 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
            "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "iterations": "i", "tolerance": "n",
            "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "lift": "n", "subdivide": "i",
-           "sides": "v", "view": "e", "colour": "k", "file-limit": "i", "frobnicate": "-n"}
+           "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "frobnicate": "-n"}
 OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj"}
 
 

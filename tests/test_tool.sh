@@ -164,6 +164,7 @@ expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
 expect 2 "--colour is for a picture" grid.obj -o new.obj --planar --colour area
+expect 2 "--title is for a picture" grid.obj -o new.obj --planar --title Roof
 expect 2 "expected planarity, area, parallelogram or bend" grid.obj -o new.obj --planar --picture new.svg --colour red
 expect 2 "AZIMUTH,ELEVATION" grid.obj -o new.obj --planar --picture new.svg --view north
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3
@@ -551,6 +552,8 @@ for colour in planarity area parallelogram bend; do
     run grid.obj -o colour.obj --planar --picture colour-$colour.svg --colour $colour
     [ $status -eq 0 ] && [ "$(grep -c '<path' colour-$colour.svg)" -ge 64 ] && pass || fail "--colour $colour"
 done
+run grid.obj -o titled.obj --planar --picture titled.svg --title 'Flat & <fair>'
+grep -q '<title>Flat &amp; &lt;fair&gt;</title>' titled.svg && pass || fail "--title"
 grep -q 'areas of the faces' colour-area.svg && pass || fail "--colour area has no legend"
 cmp -s <(grep '<path d' colour-area.svg) <(grep '<path d' colour-planarity.svg) &&
     fail "--colour area colours like planarity" || pass

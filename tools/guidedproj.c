@@ -130,6 +130,7 @@ typedef struct tool {
     double offset_distance; /* of output[OUTPUT_OFFSET] */
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
+    const char *title;                /* of the picture; NULL: the name of the output */
     bool nearest, allow_spoiled, quiet, help, version;
     bool seen[MOST_OPTIONS]; /* by row */
 
@@ -318,6 +319,12 @@ static bool set_path(tool *t, void *place, const char *name, const char *value) 
 
 static bool set_output(tool *t, void *place, const char *name, const char *value) {
     return set_path(t, &((tool_output *)place)->path, name, value);
+}
+
+static bool set_text(tool *t, void *place, const char *name, const char *value) {
+    (void)t, (void)name;
+    *(const char **)place = value;
+    return true;
 }
 
 /* Reads DISTANCE,FILE. */
@@ -1457,7 +1464,7 @@ static const tool_option options[] = {
      set_output, SETS(output[OUTPUT_FORCES]), .needs = &statics},
     {"picture", "FILE",
      "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges "
-     "(compression blue, tension red), and without --planar coloured by how far the faces are from standing by "
+     "(compression blue, tension orange), and without --planar coloured by how far the faces are from standing by "
      "themselves",
      set_output, SETS(output[OUTPUT_PICTURE])},
     {"view", "VIEW",
@@ -1465,6 +1472,7 @@ static const tool_option options[] = {
      SETS(view), .needs = &a_picture},
     {"colour", "WHAT", "of the faces in the picture, by planarity, area, parallelogram or bend", set_colour,
      SETS(colour), .needs = &a_picture},
+    {"title", "TEXT", "of the picture (the name of the output)", set_text, SETS(title), .needs = &a_picture},
     {"offset", "DISTANCE,FILE",
      "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
      "(exact with --conical)",
@@ -2009,7 +2017,7 @@ static gproj_code write_picture(tool *t, FILE *file) {
     if (t->equilibrium.given && !t->imbalance_before)
         snprintf(caption + length, sizeof caption - (size_t)length, " \xc2\xb7 equilibrium to %.1e of the largest load",
                  t->forces.residual);
-    picture.title = file_name(t->output[OUTPUT_MESH].path);
+    picture.title = t->title ? t->title : file_name(t->output[OUTPUT_MESH].path);
     picture.caption = caption;
     picture.view = is_given(t, PLACE(view)) ? &t->view : NULL;
     picture.original = t->original;

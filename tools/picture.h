@@ -38,8 +38,10 @@ typedef struct gprojx_picture_options {
     const char *legend;          /* what the numbers are */
     double low, high;            /* the scale's ends; both 0: 1e-16 and 1e-1 */
     bool linear;                 /* the scale is linear instead of logarithmic */
-    const double *edge_value;    /* edge_count numbers: widths and colours of the edges; > 0 blue, < 0 red */
-    double edge_high;            /* the value of the widest edges; 0: the largest of all */
+    /* edge_count axial forces, the widths and colours of the edges: compression (> 0) blue, tension (< 0) orange */
+    const double *edge_value;
+    double edge_high; /* the force of the widest edges; 0: the largest of all */
+    bool shadow;      /* of the mesh, straight down on the ground: the height of its lowest vertex */
 } gprojx_picture_options;
 
 typedef struct gprojx_point { /* of an item's outline */
@@ -80,6 +82,7 @@ typedef struct gprojx_painter {
     bool *crossed;        /* of each face: it crosses itself (a bow-tie) */
     bool *folded;         /* of each edge */
     bool *collapsed;      /* of each edge */
+    bool *half_painted;   /* of each edge: it waits for the second of its two faces */
     int32_t turned_count, crossed_count, folded_count, collapsed_count;
     gprojx_list point, item, link, arc, heap, ahead;
     int32_t *cell, columns, lines; /* grid: first link of each cell, or -1 */
@@ -139,6 +142,12 @@ static gprojx_colour gprojx_map(double t) {
     double at = gprojx_clamp(t, 0, 1) * last;
     int i = at >= last ? last - 1 : (int)at;
     return gprojx_mix(stop[i], stop[i + 1], at - i);
+}
+
+/* The colours of forces from small to large: blue and orange are told apart by all kinds of eyes. */
+static gprojx_colour gprojx_force_colour(bool tension, double t) {
+    static const gprojx_colour pale[2] = {{136, 172, 214}, {250, 186, 120}}, deep[2] = {{6, 38, 100}, {170, 62, 0}};
+    return gprojx_mix(pale[tension], deep[tension], gprojx_clamp(t, 0, 1));
 }
 
 static void gprojx_scale_ends(const gprojx_picture_options *options, double *low, double *high) {
@@ -216,7 +225,7 @@ static bool gprojx_project(gprojx_painter *p) {
     room[1] = gprojx_clamp(room[0] * size[1] / size[0], 380, 720);
     p->scale = fmin(room[0] / size[0], room[1] / size[1]);
     p->width = 1200;
-    p->height = room[1] + 210;
+    p->height = room[1] + (p->options->face_value && p->options->edge_value ? 250 : 210); /* two scales, or one */
     p->shift[0] = p->width / 2 - p->scale * (low[0] + high[0]) / 2;
     p->shift[1] = 90 + room[1] / 2 + p->scale * (low[1] + high[1]) / 2;
     p->depth_low = INFINITY, p->depth_high = -INFINITY;
@@ -750,7 +759,8 @@ static bool gprojx_find_marks(gprojx_painter *p) {
     p->crossed = (bool *)calloc((size_t)mesh->face_count + 1, sizeof *p->crossed);
     p->folded = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->folded);
     p->collapsed = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->collapsed);
-    if (!p->turned || !p->crossed || !p->folded || !p->collapsed) return false;
+    p->half_painted = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->half_painted);
+    if (!p->turned || !p->crossed || !p->folded || !p->collapsed || !p->half_painted) return false;
     for (i = 0; i < mesh->face_count; ++i) {
         p->crossed[i] = gprojx_is_crossed(mesh, i);
         p->crossed_count += p->crossed[i];
@@ -857,6 +867,49 @@ enum {
     GPROJX_EDGE_LEVELS = 20
 };
 
+/* The height of a face over one of its edges, as seen: how much room there is for the edge's line. */
+static double gprojx_room(const gprojx_painter *p, int32_t face, int32_t edge) {
+    const double *a = p->vertex[p->mesh->origin[2 * edge]].x, *b = p->vertex[p->mesh->origin[2 * edge + 1]].x;
+    int32_t h = p->mesh->face_halfedge[face], first = h;
+    double area = 0, length = hypot(a[0] - b[0], a[1] - b[1]);
+    for (h = p->mesh->next[h]; p->mesh->next[h] != first; h = p->mesh->next[h])
+        area += gprojx_area(p->vertex[p->mesh->origin[first]].x, p->vertex[p->mesh->origin[h]].x,
+                            p->vertex[p->mesh->origin[p->mesh->next[h]]].x);
+    return fabs(area) / 2 / (length + 1e-9);
+}
+
+/* The width of an edge with this part of the largest force. */
+static double gprojx_edge_width(const gprojx_painter *p, double level) {
+    return p->line * (0.6 + 4.6 * level / GPROJX_EDGE_LEVELS);
+}
+
+/* Begins the line of an edge by its force: at most a third of the height of its faces, where these are narrow. */
+static void gprojx_begin_force(const gprojx_painter *p, int32_t edge) {
+    double value = p->options->edge_value[edge], share = gprojx_clamp(fabs(value) / p->edge_most, 0, 1),
+           room = INFINITY;
+    int level = (int)floor(sqrt(share) * GPROJX_EDGE_LEVELS + 0.5), k;
+    for (k = 0; k < 2; ++k)
+        if (p->mesh->face[2 * edge + k] >= 0) room = fmin(room, gprojx_room(p, p->mesh->face[2 * edge + k], edge));
+    fprintf(p->file, "<path class=\"%c%d\"", value < -1e-9 * p->edge_most ? 't' : 'p', level);
+    if (room / 3 >= gprojx_edge_width(p, level)) return;
+    fputs(" style=\"stroke-width:", p->file);
+    gprojx_put_number(p->file, fmax(0.1 * floor(room / 0.3), 0.2));
+    fputc('"', p->file);
+}
+
+/* Is this edge of the boundary without force, as between two supports? It is drawn as in pictures without forces. */
+static bool gprojx_is_idle(const gprojx_painter *p, int32_t edge) {
+    bool outer = p->mesh->face[2 * edge] < 0 || p->mesh->face[2 * edge + 1] < 0;
+    return outer && fabs(p->options->edge_value[edge]) <= 1e-9 * p->edge_most;
+}
+
+/* An edge between two whole faces is painted with the second of them, over both. */
+static bool gprojx_waits(const gprojx_painter *p, const gprojx_item *item, int32_t edge) {
+    if (item->cuts > 0 || p->mesh->face[2 * edge] < 0 || p->mesh->face[2 * edge + 1] < 0) return false;
+    p->half_painted[edge] = !p->half_painted[edge];
+    return p->half_painted[edge];
+}
+
 /* Edges that stand out are lines of their own, above the face. */
 static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
     const gprojx_point *outline = gprojx_outline(p, item);
@@ -866,10 +919,9 @@ static void gprojx_paint_edges(gprojx_painter *p, const gprojx_item *item) {
         int32_t e = outline[i].edge;
         if (e < 0) continue;
         side[0] = outline[i], side[1] = outline[(i + 1) % item->count];
-        if (p->edge_most > 0) {
-            double value = p->options->edge_value[e], share = fabs(value) / p->edge_most;
-            fprintf(p->file, "<path class=\"%c%d\"", value < -1e-9 * p->edge_most ? 't' : 'p',
-                    (int)floor(sqrt(gprojx_clamp(share, 0, 1)) * GPROJX_EDGE_LEVELS + 0.5));
+        if (p->edge_most > 0 && !gprojx_is_idle(p, e)) {
+            if (gprojx_waits(p, item, e)) continue;
+            gprojx_begin_force(p, e);
         } else if (p->folded[e])
             fputs("<path class=\"f\"", p->file);
         else if (p->mesh->face[2 * e] < 0 || p->mesh->face[2 * e + 1] < 0)
@@ -895,14 +947,31 @@ static double gprojx_edge_most(const gprojx_painter *p) {
     return most;
 }
 
+/* The width of lines around a narrow face: a part of its width, as seen. */
+static double gprojx_thin_line(const gprojx_painter *p, const gprojx_item *item) {
+    const gprojx_point *q = gprojx_outline(p, item);
+    double longest = 1e-9;
+    int32_t i;
+    for (i = 0; i < item->count; ++i) {
+        const double *a = q[i].x, *b = q[(i + 1) % item->count].x;
+        longest = fmax(longest, hypot(a[0] - b[0], a[1] - b[1]));
+    }
+    return fmax(0.02 * floor(5 * fabs(item->area) / longest), 0.1);
+}
+
 static void gprojx_paint(gprojx_painter *p, int32_t index) {
     gprojx_item item = *gprojx_item_at(p, index);
     unsigned colour = gprojx_hex(gprojx_face_colour(p, &item));
     fputs("<path", p->file);
     gprojx_put_path(p->file, gprojx_outline(p, &item), item.count, true);
     fprintf(p->file, " fill=\"#%06x\"", colour);
-    if (item.cuts > 0)
+    if (item.cuts > 0 || p->edge_most > 0)
         fprintf(p->file, " stroke=\"#%06x\" stroke-width=\".5\"", colour); /* no seam to the next piece */
+    else if (gprojx_thin_line(p, &item) < p->line) {
+        fputs(" stroke-width=\"", p->file);
+        gprojx_put_number(p->file, gprojx_thin_line(p, &item));
+        fputc('"', p->file);
+    }
     fputs("/>\n", p->file);
     gprojx_paint_edges(p, &item);
 }
@@ -992,6 +1061,55 @@ static void gprojx_put_scale(gprojx_painter *p, double x, double y, double width
         gprojx_put_tick(p, x + width * gprojx_scale_at(p->options, pow(10, i)), y + 14, 0, i);
 }
 
+/* One side of the scale of forces, from 0 to that of the widest edges: samples of the lines, mirrored for tension. */
+static void gprojx_put_forces(gprojx_painter *p, double x, double y, double width, bool tension) {
+    int level;
+    for (level = 0; level < GPROJX_EDGE_LEVELS; ++level) {
+        double t = (level + 0.5) / GPROJX_EDGE_LEVELS, high = gprojx_edge_width(p, sqrt(t) * GPROJX_EDGE_LEVELS);
+        double left =
+            tension ? x + width * (1 - (level + 1.0) / GPROJX_EDGE_LEVELS) : x + width * level / GPROJX_EDGE_LEVELS;
+        fprintf(p->file, "<rect fill=\"#%06x\"", gprojx_hex(gprojx_force_colour(tension, sqrt(t))));
+        gprojx_put_attribute(p->file, "x", left);
+        gprojx_put_attribute(p->file, "y", y - high);
+        gprojx_put_attribute(p->file, "width", width / GPROJX_EDGE_LEVELS + 0.2);
+        gprojx_put_attribute(p->file, "height", 2 * high);
+        fputs("/>\n", p->file);
+    }
+}
+
+/* A number below the scale of forces. */
+static void gprojx_put_force(gprojx_painter *p, double x, double y, double force) {
+    char text[32], *comma;
+    snprintf(text, sizeof text, "%.3g", force);
+    comma = strchr(text, ',');
+    if (comma) *comma = '.';
+    gprojx_put_words(p->file, x, y, 13, " text-anchor=\"middle\"", text);
+}
+
+/* The scale of forces, twice as wide as the lines: tension, if there is any, left of 0, compression right of it. */
+static void gprojx_put_force_scale(gprojx_painter *p, double x, double y) {
+    const double width = 200;
+    bool tension = false, compression = false;
+    int32_t e;
+    for (e = 0; e < p->mesh->edge_count; ++e) {
+        if (p->options->edge_value[e] < -1e-3 * p->edge_most) tension = true;
+        if (p->options->edge_value[e] > 1e-3 * p->edge_most) compression = true;
+    }
+    if (tension) {
+        gprojx_put_forces(p, x, y, width, true);
+        gprojx_put_force(p, x + 8, y + 26, -p->edge_most);
+        gprojx_put_words(p->file, x, y - 14, 14, "", compression ? "tension" : "axial forces: tension alone");
+        x += width;
+    }
+    gprojx_put_force(p, x, y + 26, 0);
+    if (tension && !compression) return;
+    gprojx_put_forces(p, x, y, width, false);
+    gprojx_put_force(p, x + width / 2, y + 26, p->edge_most / 2);
+    gprojx_put_force(p, x + width, y + 26, p->edge_most);
+    gprojx_put_words(p->file, x + (tension ? width / 2 : 0), y - 14, 14, "",
+                     tension ? "compression" : "axial forces: compression alone");
+}
+
 /* A line of the legend: a sample of this height, and how many there are. */
 static void gprojx_put_mark(gprojx_painter *p, double x, double y, double height, int32_t count, const char *shape,
                             const char *one, const char *many) {
@@ -1019,11 +1137,8 @@ static void gprojx_put_legend(gprojx_painter *p) {
             gprojx_put_words(p->file, x + width + 24, y - 8, 13, " fill=\"#777\"",
                              "faces along the scale: now (dark), before (line)");
     }
-    if (p->edge_most > 0) {
-        char text[96];
-        snprintf(text, sizeof text, "edges by force: blue compression, red tension, widest %.3g", p->edge_most);
-        gprojx_put_words(p->file, p->options->face_value ? x + width + 24 : x, y - 28, 13, " fill=\"#777\"", text);
-    }
+    if (p->edge_most > 0)
+        gprojx_put_force_scale(p, p->options->face_value ? x + width + 24 : x, p->options->face_value ? y - 58 : y);
     if (p->turned_count > 0)
         gprojx_put_mark(p, p->width - 215, y + 8, 10, p->turned_count, "fill=\"#e66e28\" stroke=\"#222\"",
                         "face turned over", "faces turned over");
@@ -1052,15 +1167,13 @@ static void gprojx_choose_line(gprojx_painter *p) {
 
 /* The styles of edges by value: p0.. of positive, t0.. of negative ones, from thin and pale to wide and deep. */
 static void gprojx_put_edge_styles(gprojx_painter *p) {
-    static const gprojx_colour pale[2] = {{122, 160, 208}, {236, 150, 150}}, deep[2] = {{14, 38, 104}, {170, 8, 36}};
     int sign, level;
     fputs("<style>", p->file);
     for (sign = 0; sign < 2; ++sign)
         for (level = 0; level <= GPROJX_EDGE_LEVELS; ++level) {
-            double share = (double)level / GPROJX_EDGE_LEVELS;
             fprintf(p->file, ".%c%d{fill:none;stroke:#%06x;stroke-width:", sign ? 't' : 'p', level,
-                    gprojx_hex(gprojx_mix(pale[sign], deep[sign], share)));
-            gprojx_put_number(p->file, p->line * (0.6 + 4.6 * share));
+                    gprojx_hex(gprojx_force_colour(sign, (double)level / GPROJX_EDGE_LEVELS)));
+            gprojx_put_number(p->file, gprojx_edge_width(p, level));
             fputs("}", p->file);
         }
     fputs("</style>\n", p->file);
@@ -1093,7 +1206,6 @@ static void gprojx_put_head(gprojx_painter *p) {
     gprojx_put_number(p->file, fmax(3 * p->line, 1.6));
     fputs("}</style>\n", p->file);
     if (p->edge_most > 0) gprojx_put_edge_styles(p);
-    fputs("<g class=\"m\">\n", p->file);
 }
 
 /* A face once more, above all. */
@@ -1135,6 +1247,31 @@ static void gprojx_put_marks(gprojx_painter *p, gprojx_point *corner) {
     fputs("</g>\n", p->file);
 }
 
+/* The shadow: all faces, projected to the ground, as one path in whole pixels. */
+static void gprojx_put_shadow(gprojx_painter *p) {
+    const gproj_mesh *mesh = p->mesh;
+    double ground = INFINITY;
+    int32_t i, k;
+    for (i = 0; i < mesh->vertex_count; ++i)
+        if (mesh->vertex_halfedge[i] >= 0) ground = fmin(ground, mesh->position[3 * i + 2]);
+    fputs("<path fill=\"#e6eaee\" d=\"", p->file);
+    for (i = 0; i < mesh->face_count; ++i) {
+        double area[3];
+        int32_t h = mesh->face_halfedge[i];
+        gprojx_area_of(mesh, mesh->position, i, area);
+        for (k = 0; k < mesh->face_degree[i]; ++k, h = area[2] < 0 ? mesh->prev[h] : mesh->next[h]) {
+            double foot[3], x[3], w;
+            memcpy(foot, mesh->position + 3 * mesh->origin[h], sizeof foot);
+            foot[2] = ground;
+            gprojx_camera(p, foot, x);
+            w = p->scale * (p->eye > 0 ? p->eye / (p->eye - x[2]) : 1);
+            fprintf(p->file, "%c%.0f %.0f", k ? 'L' : 'M', p->shift[0] + w * x[0], p->shift[1] - w * x[1]);
+        }
+        fputc('z', p->file);
+    }
+    fputs("\"/>\n", p->file);
+}
+
 static gproj_code gprojx_draw(gprojx_painter *p) {
     gprojx_point *corner;
     int32_t i, most = 3;
@@ -1152,6 +1289,8 @@ static gproj_code gprojx_draw(gprojx_painter *p) {
         return GPROJ_ERROR_MEMORY;
     }
     gprojx_put_head(p);
+    if (p->options->shadow) gprojx_put_shadow(p);
+    fputs("<g class=\"m\">\n", p->file);
     gprojx_paint_all(p);
     fputs("</g>\n", p->file);
     gprojx_put_marks(p, corner);
@@ -1174,7 +1313,8 @@ static gproj_code gprojx_picture(FILE *file, const gproj_mesh *mesh, const gproj
     painter.file = file;
     code = gprojx_draw(&painter);
     free(painter.vertex), free(painter.cell);
-    free(painter.turned), free(painter.crossed), free(painter.folded), free(painter.collapsed);
+    free(painter.turned), free(painter.crossed), free(painter.folded), free(painter.collapsed),
+        free(painter.half_painted);
     free(painter.point.data), free(painter.item.data), free(painter.link.data), free(painter.arc.data);
     free(painter.heap.data), free(painter.ahead.data);
     return code;
