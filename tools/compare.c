@@ -49,10 +49,10 @@ static void compare_roof(int32_t i, int32_t j, int32_t side, double p[3]) {
     p[2] = 2.2 * cos(0.32 * x) + 1.6 * cos(0.22 * y + 0.001 * x * x) + 0.03 * sin(x + 2 * y);
 }
 
-/* Half of a dented funnel, bent by an inversion, x -> c + r^2 (x - c) / |x - c|^2, which keeps circles. */
+/* A part of a dented funnel, bent by an inversion, x -> c + r^2 (x - c) / |x - c|^2, which keeps circles. */
 static void compare_funnel(int32_t i, int32_t j, int32_t side, double p[3]) {
     const double centre[3] = {9, 0, 5};
-    double turn = 3.2 * j / side + 1.6, z = 5.6 * i / side, square;
+    double turn = 2.6 * j / side - 0.3, z = 5.6 * i / side, square;
     double radius = 1.6 + 0.08 * z * z + 0.03 * sin(26 * turn / 3 + z);
     int32_t k;
     p[0] = radius * cos(turn) - centre[0], p[1] = radius * sin(turn) - centre[1], p[2] = z - centre[2];

@@ -4,8 +4,8 @@
        det(b - a, c - a, d - a) = 0,
 
    which is cubic in their coordinates. Linearised at each iteration, it takes the library's steps, with its closeness.
-   The determinant is 6 times the volume of abcd; over twice the area of the face at the start it is the distance of the
-   diagonals of a quad, a length as the rows of other constraints. */
+   The determinant is the distance of the diagonals ac and bd times |(c - a) x (d - b)|; over the latter at the start it
+   is a length, as the rows of other constraints. */
 #ifndef COMPARE_CUBIC_H
 #define COMPARE_CUBIC_H
 
@@ -47,24 +47,23 @@ static void compare_cubic_refresh(void *user, gproj_system *system, int32_t grou
 /* Lists the rows: quads have one, other faces one for each corner after the third. */
 static void compare_cubic_list(const compare_problem *problem, compare_cubic_state *state) {
     const compare_faces *faces = &problem->faces;
+    const double *x = problem->original;
     size_t most = (size_t)faces->start[faces->count];
-    int32_t k, i, first, c;
-    double *q = compare_take((size_t)faces->most * 3, sizeof *q);
+    int32_t k, i, first;
     state->corner = compare_take(4 * most, sizeof *state->corner);
     state->scale = compare_take(most, sizeof *state->scale);
-    for (k = 0; k < faces->count; ++k) {
-        int32_t count = compare_corners(problem, k, q);
-        double area[3] = {0, 0, 0}, part[3]; /* twice the vectorial area */
-        for (i = 0; i < count; ++i) {
-            compare_cross(q + 3 * i, q + 3 * ((i + 1) % count), part);
-            for (c = 0; c < 3; ++c) area[c] += part[c];
-        }
+    for (k = 0; k < faces->count; ++k)
         for (first = faces->start[k]; first + 3 < faces->start[k + 1]; ++first, ++state->rows) {
-            for (i = 0; i < 4; ++i) state->corner[4 * state->rows + i] = faces->vertex[first + i];
-            state->scale[state->rows] = 1 / sqrt(compare_dot(area, area));
+            int32_t *corner = state->corner + 4 * state->rows;
+            double ac[3], bd[3], cross[3];
+            memcpy(corner, faces->vertex + first, 4 * sizeof *corner);
+            for (i = 0; i < 3; ++i) {
+                ac[i] = x[3 * corner[2] + i] - x[3 * corner[0] + i];
+                bd[i] = x[3 * corner[3] + i] - x[3 * corner[1] + i];
+            }
+            compare_cross(ac, bd, cross);
+            state->scale[state->rows] = 1 / fmax(sqrt(compare_dot(cross, cross)), 1e-6);
         }
-    }
-    free(q);
 }
 
 static void *compare_cubic_begin(compare_problem *problem) {

@@ -93,7 +93,7 @@ static void compare_plot(FILE *file, const char *title, int count, const compare
         for (i = 1; i < run[k].count; ++i) {
             double place = seconds ? 1e3 * run[k].seconds[i] : run[k].after[i];
             if (n > 0 && i + 1 < run[k].count && place < 1.12 * x[n - 1]) continue;
-            x[n] = place, y[n++] = deviation ? run[k].deviation[i] : run[k].residual[i];
+            x[n] = place, y[n++] = deviation ? run[k].deviation[i] : fmin(run[k].residual[i], 10); /* not inf */
         }
         compare_label(&run[k], name[k]);
         curve[k] = (gprojx_curve){name[k], run[k].method->colour, n, y};
