@@ -76,10 +76,7 @@ static gproj_mesh *compare_load(const compare_options *options, bool circular) {
     double mean = mesh ? gproj_mesh_mean_edge_length(mesh) : 0;
     int32_t i, polygons = 0;
     for (i = 0; mesh && i < mesh->face_count; ++i) polygons += mesh->face_degree[i] > 3;
-    if (!mesh || polygons == 0) {
-        fprintf(stderr, "compare: %s\n", mesh ? "the mesh has no faces with more than 3 sides" : error.message);
-        exit(2);
-    }
+    if (!mesh || polygons == 0) compare_fail(mesh ? "the mesh has no faces with more than 3 sides" : error.message);
     for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] /= mean;
     return mesh;
 }

@@ -39,12 +39,14 @@ typedef struct compare_method {
     void (*end)(void *);
 } compare_method;
 
+static void compare_fail(const char *sentence) {
+    fprintf(stderr, "compare: %s\n", sentence);
+    exit(2);
+}
+
 static void *compare_take(size_t count, size_t size) {
     void *block = calloc(count + 1, size);
-    if (!block) {
-        fputs("compare: out of memory\n", stderr);
-        exit(2);
-    }
+    if (!block) compare_fail("out of memory");
     return block;
 }
 
@@ -128,19 +130,19 @@ static void compare_round(int32_t count, double *q) {
         m[0] += 2 * x * x, m[1] += 2 * x * y, m[2] += 2 * y * y, r[0] += square * x, r[1] += square * y;
     }
     compare_solve_2(m, r, c);
-    for (step = 0; step < 4; ++step) {
-        double ux = 0, uy = 0; /* mean directions: the best radius is eliminated */
+    for (step = 0; step <= 3; ++step) {
+        double ux = 0, uy = 0; /* mean directions: the best radius, the mean distance, is eliminated */
         for (i = 0, radius = 0; i < count; ++i) {
             double x = q[3 * i] - c[0], y = q[3 * i + 1] - c[1], distance = hypot(x, y);
             radius += distance / count, ux += x / distance / count, uy += y / distance / count;
         }
+        if (step == 3) break; /* this radius belongs to the last centre */
         m[0] = m[1] = m[2] = r[0] = r[1] = 0;
         for (i = 0; i < count; ++i) {
             double x = q[3 * i] - c[0], y = q[3 * i + 1] - c[1], distance = hypot(x, y);
             x = x / distance - ux, y = y / distance - uy, distance -= radius;
             m[0] += x * x, m[1] += x * y, m[2] += y * y, r[0] += distance * x, r[1] += distance * y;
         }
-        if (step == 3) break;
         compare_solve_2(m, r, d);
         c[0] += d[0], c[1] += d[1];
     }
@@ -198,7 +200,7 @@ static compare_matrix compare_matrix_of(int32_t n) {
 
 static void *compare_grow(void *block, int64_t count, size_t size) {
     block = realloc(block, (size_t)count * size);
-    if (!block) exit(2);
+    if (!block) compare_fail("out of memory");
     return block;
 }
 
@@ -240,9 +242,8 @@ static void compare_analyse(compare_matrix *matrix) {
 static void compare_factor(compare_matrix *matrix) {
     if (!matrix->slot) compare_analyse(matrix);
     matrix->count = 0;
-    if (gproj_cholesky_factor(matrix->cholesky, matrix->value) == GPROJ_FACTORED) return;
-    fputs("compare: a matrix was not positive definite\n", stderr);
-    exit(2);
+    if (gproj_cholesky_factor(matrix->cholesky, matrix->value) != GPROJ_FACTORED)
+        compare_fail("a matrix was not positive definite");
 }
 
 static void compare_matrix_free(compare_matrix *matrix) {

@@ -25,11 +25,11 @@ static double compare_step_seconds(const compare_run *run) {
 /* Prints the table: a line for each run, seconds as multiples of the first run's. */
 static void compare_print_table(int count, const compare_run *run, const char *what) {
     static const double goal[] = {1e-3, 1e-4, 1e-6, 1e-9, 1e-12};
+    double base = compare_step_seconds(&run[0]);
     int k, g;
-    printf("\n| method | penalty, growth | %s after 10 | 100 | 1000 iterations | iterations | deviation | spoiled | "
-           "seconds per "
-           "iteration | to 1e-3 | to 1e-4 | to 1e-6 | to 1e-9 | to 1e-12 "
-           "|\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
+    printf("\n| method | penalty, growth | %s after 10 | 100 | 1000 iterations | iterations | deviation | spoiled "
+           "| seconds per iteration | to 1e-3 | to 1e-4 | to 1e-6 | to 1e-9 | to 1e-12 |\n"
+           "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
            what);
     for (k = 0; k < count; ++k) {
         printf("| %s | ", run[k].method->name);
@@ -38,7 +38,7 @@ static void compare_print_table(int count, const compare_run *run, const char *w
         printf(" | %.1e | %.1e | %.1e | %d | %.1e | %d | %.2f |", compare_residual_after(&run[k], 10),
                compare_residual_after(&run[k], 100), compare_residual_after(&run[k], 1000), compare_iterations(&run[k]),
                compare_last(&run[k], run[k].deviation), run[k].spoiled,
-               compare_step_seconds(&run[k]) / compare_step_seconds(&run[0]));
+               base > 0 ? compare_step_seconds(&run[k]) / base : 0);
         for (g = 0; g < 5; ++g) {
             int32_t i = compare_find(&run[k], goal[g]), first = compare_find(&run[0], goal[g]);
             if (i < 0 || first < 0)
@@ -49,7 +49,7 @@ static void compare_print_table(int count, const compare_run *run, const char *w
         puts("");
     }
     printf("Seconds are multiples of those of %s: %.2f ms per iteration, after %.2f ms of preparation.\n",
-           run[0].method->name, 1e3 * compare_step_seconds(&run[0]), 1e3 * run[0].seconds[0]);
+           run[0].method->name, 1e3 * base, 1e3 * run[0].seconds[0]);
 }
 
 static FILE *compare_open(const char *folder, const char *kind, const char *name) {
@@ -57,14 +57,13 @@ static FILE *compare_open(const char *folder, const char *kind, const char *name
     FILE *file;
     snprintf(path, sizeof path, "%s/%s_%s.svg", folder, kind, name);
     file = fopen(path, "w");
-    if (!file) fprintf(stderr, "compare: cannot write %s\n", path), exit(2);
+    if (!file) compare_fail("the folder cannot be written to");
     return file;
 }
 
 static void compare_close(FILE *file, gproj_code code) {
-    if (fclose(file) == 0 && code == GPROJ_OK) return;
-    fprintf(stderr, "compare: %s\n", gproj_code_string(code == GPROJ_OK ? GPROJ_ERROR_FILE : code));
-    exit(2);
+    if (fclose(file) != 0 && code == GPROJ_OK) code = GPROJ_ERROR_FILE;
+    if (code != GPROJ_OK) compare_fail(gproj_code_string(code));
 }
 
 /* Writes the method's name with the tuning. */
@@ -91,7 +90,7 @@ static void compare_plot(FILE *file, const char *title, int count, const compare
         int n = 0;
         at[k] = x = compare_take(2 * (size_t)run[k].count, sizeof *x), y = x + run[k].count;
         for (i = 1; i < run[k].count; ++i) {
-            double place = seconds ? 1e3 * run[k].seconds[i] : run[k].after[i];
+            double place = seconds ? fmax(1e3 * run[k].seconds[i], 1e-3) : run[k].after[i];
             if (n > 0 && i + 1 < run[k].count && place < 1.12 * x[n - 1]) continue;
             x[n] = place, y[n++] = deviation ? run[k].deviation[i] : fmin(run[k].residual[i], 10); /* not inf */
         }
