@@ -18,8 +18,9 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
            "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "iterations": "i", "tolerance": "n",
            "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "lift": "n", "subdivide": "i",
-           "sides": "v", "view": "e", "colour": "k", "file-limit": "i", "frobnicate": "-n"}
-OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj"}
+           "sides": "v", "view": "e", "colour": "k", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
+OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj",
+           "panels": "out.dxf", "panel-list": "list.csv"}
 
 
 def grid(rng):
@@ -59,13 +60,15 @@ def value(rng, kind, vertices, wildness):
     if kind == "f": return rng.choice(["list.txt", "no.obj", "."]) if wild else "in.obj"
     if kind == "l": return rng.choice(["list.txt", "in.obj", "."]) if wild else "loads.csv"
     if kind == "e": return "behind" if wild else rng.choice(["iso", "top", "-10,200"])
+    if kind == "h": return ",".join(number() for _ in range(rng.choice([2, 3])))
     if kind == "k": return "mauve" if wild else rng.choice(["planarity", "area", "parallelogram", "bend"])
     return number()
 
 
 # What needs another option, which is mostly added.
 NEEDS = {"circular": "--planar", "conical": "--planar", "gauss": "--planar", "colour": "--picture=out.svg", "view": "--picture=out.svg",
-         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium"}
+         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium", "sheet": "--panels=out.dxf", "panel-scale": "--panels=out.dxf",
+         "panel-list": "--panels=out.dxf"}
 NEEDS.update({name: "--equilibrium" for name in ("compressive", "tensile", "stress", "supports", "density", "area-load", "snow", "loads",
                                                  "force-fairness")})
 

@@ -28,6 +28,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "panels.h"
 #include "picture.h"
 #include "report.h"
 #include "threads.h"
@@ -99,6 +100,8 @@ enum {
     OUTPUT_FORCES,
     OUTPUT_OFFSET,
     OUTPUT_SUPPORT,
+    OUTPUT_PANELS,
+    OUTPUT_PANEL_LIST,
     OUTPUT_STATE, /* and an input, where the file exists */
     OUTPUT_COUNT
 };
@@ -127,6 +130,7 @@ typedef struct tool {
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
+    gprojx_panel_options sheet;
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
     bool nearest, allow_spoiled, quiet, help, version;
@@ -138,6 +142,7 @@ typedef struct tool {
     gproj_mesh *mesh, *reference_mesh;
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
+    gprojx_panels *panels;
     int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
     gproj_surface *surface;
     gproj_curve **curve;
@@ -443,6 +448,30 @@ static bool set_supports(tool *t, void *place, const char *name, const char *val
 static bool set_positive(tool *t, void *place, const char *name, const char *value) {
     return (read_number(value, strlen(value), (double *)place) && *(double *)place > 0) ||
            fail_value(t, name, value, "a number larger than 0");
+}
+
+/* Reads WIDTH,HEIGHT[,GAP] in millimetres. */
+static bool set_sheet(tool *t, void *place, const char *name, const char *value) {
+    gprojx_panel_options *sheet = (gprojx_panel_options *)place;
+    double *number[3] = {&sheet->width, &sheet->height, &sheet->gap};
+    const char *at = value;
+    int k;
+    for (k = 0; k < 3; ++k, ++at) {
+        size_t size = strcspn(at, ",");
+        if (!read_number(at, size, number[k]) || !(*number[k] > 0) || *number[k] > 1e9) break;
+        at += size;
+        if (!*at && k >= 1 && 2 * sheet->gap < fmin(sheet->width, sheet->height)) return true;
+        if (!*at) break;
+    }
+    return fail_value(t, name, value,
+                      "WIDTH,HEIGHT or WIDTH,HEIGHT,GAP in millimetres, above 0 and at most 1e9, with a gap below half "
+                      "of both");
+}
+
+static bool set_panel_scale(tool *t, void *place, const char *name, const char *value) {
+    double *scale = (double *)place;
+    return (read_number(value, strlen(value), scale) && *scale >= 1e-9 && *scale <= 1e9) ||
+           fail_value(t, name, value, "the millimetres that a unit of the mesh is (1e-9 to 1e9)");
 }
 
 static bool read_count(tool *t, int32_t *count, const char *name, const char *value, int32_t low, int32_t high) {
@@ -1411,6 +1440,7 @@ static const tool_need a_curve = {PLACE(fill), "are those of a curve: add --fill
 static const tool_need a_picture = {PLACE(output[OUTPUT_PICTURE]), "is for a picture: add --picture FILE.svg"};
 static const tool_need an_offset = {PLACE(output[OUTPUT_OFFSET]),
                                     "is between the mesh and its offset: add --offset DISTANCE,FILE.obj"};
+static const tool_need panels = {PLACE(output[OUTPUT_PANELS]), "is about panels: add --panels FILE.svg or FILE.dxf"};
 static const tool_need normals = {PLACE(planar), "needs the normals of planar faces: add --planar"};
 static const tool_need statics = {
     PLACE(equilibrium),
@@ -1565,6 +1595,24 @@ static const tool_option options[] = {
      set_offset, SETS(output[OUTPUT_OFFSET])},
     {"support", "FILE", "the panels between the mesh and its --offset, .obj or .off: one quad an edge", set_output,
      SETS(output[OUTPUT_SUPPORT]), .needs = &an_offset},
+    {"panels", "FILE",
+     "the faces laid flat at true size on sheets, to be cut, .svg or .dxf (R12), in millimetres: each with its number "
+     "and, "
+     "along the edges, the neighbours' numbers and dihedral angles, measured behind (below 180 degrees a ridge, above "
+     "a "
+     "valley). With --support also its panels (S and the edge's number). Refused, by name, where a panel is not planar "
+     "to "
+     "1e-6 of half its perimeter",
+     set_output, SETS(output[OUTPUT_PANELS])},
+    {"panel-list", "FILE", "CSV: the panels' areas and sizes, their edges' lengths and dihedral angles", set_output,
+     SETS(output[OUTPUT_PANEL_LIST]), .needs = &panels},
+    {"sheet", "W,H[,GAP]",
+     "of the panels: width and height in mm, and the gap between panels and at the border (a twentieth of the mean "
+     "edge). "
+     "If left out, one sheet holds all",
+     set_sheet, SETS(sheet), .needs = &panels},
+    {"panel-scale", "S", "millimetres that a unit of the mesh is (1; 1000 for a mesh in metres)", set_panel_scale,
+     SETS(sheet.scale), .needs = &panels},
     {"quiet", "", "print errors only", set_flag, SETS(quiet)},
     {"help", "", "print this", set_flag, SETS(help), .letter = 'h'},
     {"version", "", "print the version", set_flag, SETS(version)},
@@ -1748,6 +1796,12 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
     if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--state is a file: give its name");
+    output = t->output[OUTPUT_PANELS].path;
+    if (output && !has_ending(output, ".svg") && !has_ending(output, ".dxf"))
+        return fail(t, EXIT_USAGE, "the panels '%s' must end in .svg or .dxf", output);
+    output = t->output[OUTPUT_PANEL_LIST].path;
+    if (output && !has_ending(output, ".csv"))
+        return fail(t, EXIT_USAGE, "the list of panels '%s' must end in .csv", output);
     for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
         output = t->output[i].path;
         if (output && !has_ending(output, ".obj") && !has_ending(output, ".off"))
@@ -2022,6 +2076,13 @@ static bool make_offset(tool *t) {
     return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
 }
 
+static bool make_panels(tool *t) {
+    gproj_error error;
+    if (!t->output[OUTPUT_PANELS].path) return true;
+    t->panels = gprojx_panels_create(t->mesh, t->support, &t->sheet, &error);
+    return t->panels || fail_library(t, t->output[OUTPUT_PANELS].path, &error);
+}
+
 /* The largest difference between a distance and the one that was asked for. */
 static double offset_error(const tool *t) {
     const gproj_offset_measures *m = &t->offset_measures;
@@ -2159,6 +2220,13 @@ static gproj_code write_offset(tool *t, FILE *file) { return write_as(t->offset,
 static gproj_code write_support(tool *t, FILE *file) {
     return write_as(t->support, t->output[OUTPUT_SUPPORT].path, file);
 }
+
+static gproj_code write_panels(tool *t, FILE *file) {
+    bool dxf = has_ending(t->output[OUTPUT_PANELS].path, ".dxf");
+    return dxf ? gprojx_panels_dxf(file, t->panels) : gprojx_panels_svg(file, t->panels);
+}
+
+static gproj_code write_panel_list(tool *t, FILE *file) { return gprojx_panels_csv(file, t->panels); }
 
 static gproj_code write_state(tool *t, FILE *file) {
     size_t size = gproj_state_size(t->form);
@@ -2353,6 +2421,8 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
         !write_output(t, &t->output[OUTPUT_OFFSET], write_offset) ||
         !write_output(t, &t->output[OUTPUT_SUPPORT], write_support) ||
+        !write_output(t, &t->output[OUTPUT_PANELS], write_panels) ||
+        !write_output(t, &t->output[OUTPUT_PANEL_LIST], write_panel_list) ||
         !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
@@ -2403,6 +2473,12 @@ static void print_offset(const tool *t) {
                (long)m->reversed_edges);
 }
 
+static void print_panels(const tool *t) {
+    const gprojx_panels *p = t->panels;
+    printf("panels        %ld on %ld sheet%s of %.6g x %.6g mm, %.0f %% covered\n", (long)p->count,
+           (long)p->sheet_count, p->sheet_count == 1 ? "" : "s", p->options.width, p->options.height, 100 * p->used);
+}
+
 /* The largest distance that a support moved. */
 static double support_movement(const tool *t) {
     double most = 0;
@@ -2449,6 +2525,7 @@ static void print_summary(const tool *t) {
     if (t->conical.given)
         printf("conicality    %.2e -> %.2e largest (radians)\n", b->conicality_max, a->conicality_max);
     if (t->offset) print_offset(t);
+    if (t->panels) print_panels(t);
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
     print_asked(t);
@@ -2480,7 +2557,7 @@ static bool run(tool *t) {
     t->read_seconds = mark - t->start;
     if (!build_form(t)) return false;
     t->setup_seconds = now(NULL) - mark;
-    if (!solve(t) || !make_offset(t) || !write_outputs(t)) return false;
+    if (!solve(t) || !make_offset(t) || !make_panels(t) || !write_outputs(t)) return false;
     if (!t->quiet) print_summary(t);
     return finish_printing(t);
 }
@@ -2494,6 +2571,7 @@ static void clean_up(tool *t) {
     gproj_form_destroy(t->form);
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
+    gprojx_panels_destroy(t->panels);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
     gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);
