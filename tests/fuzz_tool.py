@@ -17,7 +17,7 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "tensile": "-w", "stress": "r", "supports": "v", "density": "n", "area-load": "n", "snow": "n", "loads": "l",
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
            "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "iterations": "i", "tolerance": "n",
-           "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "lift": "n", "subdivide": "i",
+           "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "encoding": "o", "lift": "n", "subdivide": "i",
            "sides": "v", "view": "e", "colour": "k", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
 OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj",
            "panels": "out.dxf", "panel-list": "list.csv"}
@@ -61,6 +61,7 @@ def value(rng, kind, vertices, wildness):
     if kind == "l": return rng.choice(["list.txt", "in.obj", "."]) if wild else "loads.csv"
     if kind == "e": return "behind" if wild else rng.choice(["iso", "top", "-10,200"])
     if kind == "h": return ",".join(number() for _ in range(rng.choice([2, 3])))
+    if kind == "o": return "middle" if wild else rng.choice(["little", "big", "ascii"])
     if kind == "k": return "mauve" if wild else rng.choice(["planarity", "area", "parallelogram", "bend"])
     return number()
 

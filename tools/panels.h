@@ -16,6 +16,8 @@
 #ifndef GPROJX_PANELS_H
 #define GPROJX_PANELS_H
 
+#include <float.h>
+
 #include "picture.h"
 
 #define GPROJX_PANEL_FLAT 1e-6 /* a corner's largest distance from the panel's plane, in half the panel's perimeter */
@@ -56,7 +58,7 @@ static double gprojx_far2(const double a[2], const double b[2]) { return hypot(b
 /* ---- one panel in its plane ---- */
 
 /* Lays a face into the plane: corner 0 at the origin, the longest side along x. Returns half the perimeter; *flatness
-   is the largest distance of a corner from the plane, infinite without an area. If it is large, no corner is written. */
+   is a corner's largest distance from the plane, infinite without an area. If it is large, no corner is written. */
 static double gprojx_flatten(const gproj_mesh *mesh, int32_t face, double scale, double *corner, double *flatness) {
     int32_t first = mesh->face_halfedge[face], degree = mesh->face_degree[face], h, k;
     const double *start = mesh->position + 3 * (size_t)mesh->origin[first];
