@@ -45,10 +45,11 @@ def dihedral(a, b, side):
 def read_svg(path):
     """{name: (sheet, corners, [(words, x, y, angle)])} and the sheets' size; y upwards from each sheet's lower border."""
     panels, root = {}, xml.parse(path).getroot()
-    size = None
+    size, places = None, []
     for number, sheet in enumerate(root.findall(SVG + "g")):
         border = sheet.find(SVG + "rect")
         size = float(border.get("width")), float(border.get("height"))
+        places.append([float(x) for x in sheet.get("transform").replace("translate(", "").replace(")", "").split()])
         for group in sheet.findall(SVG + "g"):
             corners = [[float(x) for x in p.split(",")] for p in group.find(SVG + "polygon").get("points").split()]
             words = []
@@ -56,7 +57,14 @@ def read_svg(path):
                 x, y, angle = text.get("transform").replace("translate(", "").replace("rotate(", "").replace(")", "").split()
                 words.append((text.text, float(x), size[1] - float(y), -float(angle)))
             panels[group.get("id").replace("panel-", "")] = number, [[x, size[1] - y] for x, y in corners], words
+    box = [float(x) for x in root.get("viewBox").split()]
+    check(all(0 <= x and x + size[0] <= box[2] and 0 <= y and y + size[1] <= box[3] for x, y in places), "sheets beyond the picture")
+    check(are_apart(places, size), "sheets meet in the picture")
     return panels, size, root
+
+
+def are_apart(places, size):
+    return all(abs(p[0] - q[0]) > size[0] or abs(p[1] - q[1]) > size[1] for i, p in enumerate(places) for q in places[:i])
 
 
 def far(a, b): return math.hypot(*minus(a, b))
@@ -135,6 +143,7 @@ def check_dxf(path, panels, size):
     check(len(cut) == len(panels) and all(e.is_closed for e in cut), "outlines in the DXF")
     check(len(borders) == 1 + max(sheet for sheet, _, _ in panels.values()), "borders in the DXF")
     place = [e.vertices[0].dxf.location for e in borders]
+    check(are_apart(place, size) and all(len(e.vertices) == 4 for e in borders), "sheets meet in the DXF")
     texts = [e for e in space.query("TEXT")]
     check(len(texts) == sum(len(words) for _, _, words in panels.values()), "words in the DXF")
     check({e.dxf.layer for e in texts} == {"TEXT"} and {e.dxf.layer for e in space.query("LINE")} <= {"MARKS"}, "layers of words and lines")

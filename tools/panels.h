@@ -138,6 +138,7 @@ static bool gprojx_find_rectangle(const double *hull, int32_t count, double widt
     int32_t extreme[3] = {1, 1, 1}, i, k; /* farthest along the edge, away from it, and back */
     double least = INFINITY;
     bool found = false;
+    memset(best, 0, sizeof *best);
     for (i = 0; i < count; ++i) {
         const double *a = hull + 2 * i, *b = hull + 2 * ((i + 1) % count);
         double length = gprojx_far2(a, b), u[2], reach[3];
@@ -280,7 +281,7 @@ static bool gprojx_pack(gprojx_panels *p) {
     size_t room = (size_t)p->count + 1;
     gprojx_panel **order = (gprojx_panel **)malloc(room * sizeof *order);
     gprojx_shelf *shelf = (gprojx_shelf *)malloc(room * sizeof *shelf);
-    double *filled = (double *)malloc(room * sizeof *filled), area = 0;
+    double *filled = (double *)calloc(room, sizeof *filled), area = 0;
     bool good = order && shelf && filled;
     int32_t i, k;
     if (!(p->options.width > 0)) gprojx_choose_width(p);
