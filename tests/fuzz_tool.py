@@ -68,8 +68,8 @@ def value(rng, kind, vertices, wildness):
 
 # What needs another option, which is mostly added.
 NEEDS = {"circular": "--planar", "conical": "--planar", "gauss": "--planar", "colour": "--picture=out.svg", "view": "--picture=out.svg",
-         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium", "sheet": "--panels=out.dxf", "panel-scale": "--panels=out.dxf",
-         "panel-list": "--panels=out.dxf"}
+         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium", "encoding": "--offset=0.2,panel.ply",
+         "sheet": "--panels=out.dxf", "panel-scale": "--panels=out.dxf", "panel-list": "--panels=out.dxf"}
 NEEDS.update({name: "--equilibrium" for name in ("compressive", "tensile", "stress", "supports", "density", "area-load", "snow", "loads",
                                                  "force-fairness")})
 
@@ -117,7 +117,7 @@ def wrong(folder, data, vertices, args, status, out, err):
     """What is wrong with the outcome; None: nothing."""
     if status not in (0, 1, 2, 3, 4): return f"status {status}"
     if "runtime error" in err or "Sanitizer" in err: return "a sanitizer's word"
-    known = {"in.obj", "list.txt", "loads.csv", "out.obj", "panel.obj", "out.off"} | set(OUTPUTS.values())
+    known = {"in.obj", "list.txt", "loads.csv", "out.obj", "panel.obj", "panel.ply", "out.off"} | set(OUTPUTS.values())
     strange = [name for name in os.listdir(folder) if name not in known]
     if strange: return f"{strange} left behind"
     if read(os.path.join(folder, "in.obj")) != data: return "the input was changed"
@@ -125,7 +125,7 @@ def wrong(folder, data, vertices, args, status, out, err):
     if status >= 2:
         if not err.strip(): return "no sentence"
         if after != b"before": return "the output was touched"
-        if any(os.path.exists(os.path.join(folder, name)) for name in list(OUTPUTS.values()) + ["panel.obj"]): return "another output was made"
+        if any(os.path.exists(os.path.join(folder, name)) for name in list(OUTPUTS.values()) + ["panel.obj", "panel.ply"]): return "another output was made"
         return None
     if "-h" in args or "--help" in args or "--version" in args: return None
     lines = after.decode(errors="replace").split("\n")

@@ -174,6 +174,7 @@ expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset inf,old.
 expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.obj --planar --offset 0.3,new.fbx
 expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.obj --planar --offset 0.3,old.obj --support new
 expect 2 "expected little, big or ascii; did you mean little?" grid.obj -o new.ply --planar --encoding litle
+expect 2 "--encoding is for outputs that end in" grid.obj -o new.obj --planar --encoding ascii
 expect 2 "--encoding big is not for STL" grid.obj -o new.stl --planar --encoding big
 expect 2 "--encoding big is not for STL" grid.obj -o new.ply --planar --encoding big --offset 0.3,old.STL
 expect 2 "add --offset" grid.obj -o new.obj --planar --support old.obj
@@ -441,6 +442,9 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1e-9 0\nv 1 1 0\nv 1 1e-9 0\nv 1
 run thin.obj -o same.obj $still --weld
 [ "$(counts same.obj)" = "4 2" ] && grep -q '1 faces had fewer than 3 corners left after merging' out.txt && pass ||
     fail "a collapsing triangle: $(counts same.obj), $(cat out.txt err.txt)"
+sed '1s/.*/&\nfacet normal 0 0 0\nouter loop\nvertex 9 9 0\nvertex 9 9 1\nvertex 9 9 2\nendloop\nendfacet/' same.stl >line.stl
+run line.stl -o same.obj $still
+grep -q '1 faces have no area' out.txt && pass || fail "a triangle without an area: $(cat out.txt err.txt)"
 (cat same.stl; yes '                    ' | head -c 2000000) >long.stl
 expect 3 "long.stl: more than 1 MB" long.stl -o new.obj $still --file-limit 1
 ln -s /dev/zero zero.ply

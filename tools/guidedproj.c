@@ -1844,6 +1844,10 @@ static bool check_mesh_output(tool *t, const tool_output *output) {
     return t->encoding != GPROJX_BIG || fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
 }
 
+static bool is_foreign(const tool *t, int output) {
+    return t->output[output].path && format_named(t->output[output].path) != GPROJX_NEITHER;
+}
+
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     int i;
@@ -1875,6 +1879,9 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "the list of panels '%s' must end in .csv", output);
     for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i)
         if (!check_mesh_output(t, &t->output[i])) return false;
+    if (is_given(t, PLACE(encoding)) && !is_foreign(t, OUTPUT_MESH) && !is_foreign(t, OUTPUT_OFFSET) &&
+        !is_foreign(t, OUTPUT_SUPPORT))
+        return fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
     if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
@@ -2529,6 +2536,7 @@ static void print_mesh(const tool *t) {
     if (t->reading.left_out > 0)
         printf("note: %ld triangles with two corners at one place were left out, the first before face %ld\n",
                (long)t->reading.left_out, (long)t->reading.first_left_out);
+    if (t->before.degenerate_faces > 0) printf("note: %ld faces have no area\n", (long)t->before.degenerate_faces);
     if (t->collapsed > 0)
         printf("note: %ld faces had fewer than 3 corners left after merging, and were left out\n", (long)t->collapsed);
     if (t->welded > 0)
