@@ -106,7 +106,7 @@ def check_faces(points, faces, panels):
             middle = [(x + y) / 2 for x, y in zip(corners[k], corners[(k + 1) % len(face)])]
             near = min(rest, key=lambda w: far(middle, w[1:3]))
             rest.remove(near)
-            number, angle = near[0].split()
+            number, angle = near[0].split(": ")
             along = math.degrees(math.atan2(*reversed(minus(corners[(k + 1) % len(face)], corners[k]))))
             check(int(number) == other and abs(float(angle.rstrip("\u00b0")) - dihedral(normals[f], normals[other], minus(points[b], points[a]))) < 0.051,
                   f"panel {f}: {near[0]} stands for face {other}")

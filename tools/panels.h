@@ -431,7 +431,7 @@ static int gprojx_edge_words(const gprojx_panels *p, const gprojx_panel *panel, 
     words[0] = 0;
     if (!panel->strip && mesh->face[mesh->twin[h]] >= 0) {
         gproj_number_write(floor(10 * gprojx_dihedral(mesh, h) + 0.5) / 10, angle);
-        snprintf(words, 80, "%ld  %s%s", (long)mesh->face[mesh->twin[h]], angle, degree_sign);
+        snprintf(words, 80, "%ld: %s%s", (long)mesh->face[mesh->twin[h]], angle, degree_sign);
         return (int)(strlen(words) - strlen(degree_sign)) + 1;
     }
     if (panel->strip && k == 0) {
@@ -605,7 +605,7 @@ static gproj_code gprojx_panels_svg(FILE *file, const gprojx_panels *p) {
     gprojx_put_exact(file, " ", most[1]);
     gprojx_put_exact(file, "\" fill=\"none\" stroke-width=\"", thin);
     fputs("\">\n<style>text{fill:#000;stroke:none;text-anchor:middle;font-family:Helvetica,Arial,'DejaVu "
-          "Sans',sans-serif;white-space:pre}</style>\n",
+          "Sans',sans-serif}</style>\n",
           file);
     for (s = 0; good && s < p->sheet_count; ++s) {
         gprojx_sheet_place(p, s, at);
