@@ -420,6 +420,9 @@ done
 cp same.ply same.unknown
 run same.unknown -o same.obj $still
 [ $status -eq 0 ] && cmp -s same.obj base.obj && pass || fail "PLY by its first word: $(cat err.txt)"
+run grid.obj -o same.ply $still
+run <(cat same.ply) -o same.obj $still
+[ $status -eq 0 ] && cmp -s same.obj base.obj && pass || fail "a binary PLY from a pipe: $(cat err.txt)"
 for encoding in little ascii; do
     run grid.obj -o same.stl $still --encoding $encoding
     run same.stl -o same.obj $still

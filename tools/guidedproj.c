@@ -802,9 +802,15 @@ static char *copy_text(tool *t, const char *text, size_t size) {
     return copy;
 }
 
-/* A file with a NUL behind it; `length` does not count that. A `text` is read up to its first zero byte, which no text has:
+typedef enum tool_content {
+    CONTENT_BYTES,
+    CONTENT_TEXT,
+    CONTENT_MESH /* text, unless it begins like an STL or PLY */
+} tool_content;
+
+/* A file with a NUL behind it; `length` does not count that. A text is read up to its first zero byte, which no text has:
    devices give such bytes without end. */
-static char *load_file(tool *t, const char *path, bool text, size_t *length) {
+static char *load_file(tool *t, const char *path, tool_content content, size_t *length) {
     FILE *file = fopen(path, "rb");
     size_t size = 0, capacity = 0, got = 0, most = (size_t)t->file_limit << 20;
     char *bytes = NULL;
@@ -820,7 +826,8 @@ static char *load_file(tool *t, const char *path, bool text, size_t *length) {
             bytes = moved;
         }
         got = fread(bytes + size, 1, capacity - size - 1, file);
-        more = got > 0 && !(text && memchr(bytes + size, 0, got));
+        if (content == CONTENT_MESH && gprojx_format_of(bytes, size + got) != GPROJX_NEITHER) content = CONTENT_BYTES;
+        more = got > 0 && (content == CONTENT_BYTES || !memchr(bytes + size, 0, got));
         size += got;
         bytes[size] = 0;
         if (ferror(file)) more = fail(t, EXIT_REFUSED, "%s: %s", path, strerror(errno));
@@ -838,7 +845,7 @@ static char *load_file(tool *t, const char *path, bool text, size_t *length) {
 /* A text that is no mesh. */
 static char *load_text(tool *t, const char *path) {
     size_t length;
-    char *text = load_file(t, path, true, &length);
+    char *text = load_file(t, path, CONTENT_TEXT, &length);
     if (!text || strlen(text) == length) return text;
     fail(t, EXIT_REFUSED, "%s: a zero byte; this is a device, a binary file or UTF-16, not a text", path);
     free(text);
@@ -850,17 +857,14 @@ static gprojx_format format_named(const char *path) {
     return has_ending(path, ".stl") ? GPROJX_STL : has_ending(path, ".ply") ? GPROJX_PLY : GPROJX_NEITHER;
 }
 
-/* Reads a file with the format of the ending, else of the first word. Text is read up to a zero byte, unless it turns
-   out to be the head of a binary file. */
+/* Reads a file with the format of the ending, else of the first word. */
 static char *load_mesh_file(tool *t, const char *path, gprojx_format *format, size_t *size) {
+    bool named = has_ending(path, ".obj") || has_ending(path, ".off");
     char *bytes;
     *format = format_named(path);
-    bytes = load_file(t, path, *format == GPROJX_NEITHER, size);
-    if (!bytes || *format != GPROJX_NEITHER || has_ending(path, ".obj") || has_ending(path, ".off")) return bytes;
-    *format = gprojx_format_of(bytes, *size);
-    if (*format == GPROJX_NEITHER) return bytes;
-    free(bytes);
-    return load_file(t, path, false, size);
+    bytes = load_file(t, path, *format != GPROJX_NEITHER ? CONTENT_BYTES : named ? CONTENT_TEXT : CONTENT_MESH, size);
+    if (bytes && *format == GPROJX_NEITHER && !named) *format = gprojx_format_of(bytes, *size);
+    return bytes;
 }
 
 /* Loads the mesh at path[0..size-1]. reading: NULL, or of an STL what was left out. */
@@ -2072,7 +2076,7 @@ static bool restore(tool *t) {
     size_t size;
     char *bytes;
     if (access(state->target, F_OK) != 0) return true;
-    bytes = load_file(t, state->path, false, &size);
+    bytes = load_file(t, state->path, CONTENT_BYTES, &size);
     if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
     free(bytes);
     return t->exit_code == 0;
