@@ -11,9 +11,9 @@
 static gproj_mesh *make_quads(int32_t rows, int32_t columns, bool closed,
                               void (*place)(int32_t i, int32_t j, double p[3]), gproj_error *error) {
     int32_t across = closed ? columns : columns + 1, faces = 0, i, j;
-    double *position = malloc(3 * sizeof *position * (size_t)((rows + 1) * across));
-    int32_t *degree = malloc(sizeof *degree * (size_t)(rows * columns));
-    int32_t *corner = malloc(4 * sizeof *corner * (size_t)(rows * columns)), *c = corner;
+    double *position = (double *)malloc(3 * sizeof *position * (size_t)((rows + 1) * across));
+    int32_t *degree = (int32_t *)malloc(sizeof *degree * (size_t)(rows * columns));
+    int32_t *corner = (int32_t *)malloc(4 * sizeof *corner * (size_t)(rows * columns)), *c = corner;
     gproj_mesh *mesh = NULL;
     if (position && degree && corner) {
         for (i = 0; i <= rows; ++i)

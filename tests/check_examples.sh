@@ -25,6 +25,14 @@ for source in "$root"/examples/*.c; do
         clean "$name does not print what is expected (< expected, > printed)" "$(diff "$expected" "$work/$name.txt")"
     fi
 done
+# Those that say that they are C and C++ compile as C++, too.
+for compiler in g++ clang++; do
+    have $compiler || { skip "examples in C++: no $compiler"; continue; }
+    for source in $(grep -l 'C and C++\.' "$root"/examples/*.c); do
+        clean "$(basename "$source") as C++, $compiler" \
+            "$($compiler -x c++ -std=c++11 -Wall -Wextra -Werror -DGPROJI_IMPLEMENTED -fsyntax-only "$source" 2>&1)"
+    done
+done
 # examples/roof.obj, the mesh to try, is what planarize writes (but for the last digits of other maths libraries).
 clean 'examples/roof.obj is not the roof of planarize.c' "$(paste "$work/roof.obj" "$root/examples/roof.obj" | awk '
     { half = NF / 2; for (k = 1; k <= half; ++k) { d = $k - $(k + half); if ($1 != $(1 + half) || d * d > 1e-20) { print; next } } }')"

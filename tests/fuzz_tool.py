@@ -17,9 +17,10 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "tensile": "-w", "stress": "r", "supports": "v", "density": "n", "area-load": "n", "snow": "n", "loads": "l",
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
            "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "iterations": "i", "tolerance": "n",
-           "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "lift": "n", "subdivide": "i",
-           "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "frobnicate": "-n"}
-OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj"}
+           "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "encoding": "o", "lift": "n", "subdivide": "i",
+           "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
+OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj",
+           "panels": "out.dxf", "panel-list": "list.csv"}
 
 
 def grid(rng):
@@ -59,13 +60,16 @@ def value(rng, kind, vertices, wildness):
     if kind == "f": return rng.choice(["list.txt", "no.obj", "."]) if wild else "in.obj"
     if kind == "l": return rng.choice(["list.txt", "in.obj", "."]) if wild else "loads.csv"
     if kind == "e": return "behind" if wild else rng.choice(["iso", "top", "-10,200"])
+    if kind == "h": return ",".join(number() for _ in range(rng.choice([2, 3])))
+    if kind == "o": return "middle" if wild else rng.choice(["little", "big", "ascii"])
     if kind == "k": return "mauve" if wild else rng.choice(["planarity", "area", "parallelogram", "bend"])
     return number()
 
 
 # What needs another option, which is mostly added.
 NEEDS = {"circular": "--planar", "conical": "--planar", "gauss": "--planar", "colour": "--picture=out.svg", "view": "--picture=out.svg",
-         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium"}
+         "support": "--offset=0.2,panel.obj", "forces": "--equilibrium", "encoding": "--offset=0.2,panel.ply",
+         "sheet": "--panels=out.dxf", "panel-scale": "--panels=out.dxf", "panel-list": "--panels=out.dxf"}
 NEEDS.update({name: "--equilibrium" for name in ("compressive", "tensile", "stress", "supports", "density", "area-load", "snow", "loads",
                                                  "force-fairness")})
 
@@ -113,7 +117,7 @@ def wrong(folder, data, vertices, args, status, out, err):
     """What is wrong with the outcome; None: nothing."""
     if status not in (0, 1, 2, 3, 4): return f"status {status}"
     if "runtime error" in err or "Sanitizer" in err: return "a sanitizer's word"
-    known = {"in.obj", "list.txt", "loads.csv", "out.obj", "panel.obj", "out.off"} | set(OUTPUTS.values())
+    known = {"in.obj", "list.txt", "loads.csv", "out.obj", "panel.obj", "panel.ply", "out.off"} | set(OUTPUTS.values())
     strange = [name for name in os.listdir(folder) if name not in known]
     if strange: return f"{strange} left behind"
     if read(os.path.join(folder, "in.obj")) != data: return "the input was changed"
@@ -121,7 +125,7 @@ def wrong(folder, data, vertices, args, status, out, err):
     if status >= 2:
         if not err.strip(): return "no sentence"
         if after != b"before": return "the output was touched"
-        if any(os.path.exists(os.path.join(folder, name)) for name in list(OUTPUTS.values()) + ["panel.obj"]): return "another output was made"
+        if any(os.path.exists(os.path.join(folder, name)) for name in list(OUTPUTS.values()) + ["panel.obj", "panel.ply"]): return "another output was made"
         return None
     if "-h" in args or "--help" in args or "--version" in args: return None
     lines = after.decode(errors="replace").split("\n")

@@ -87,7 +87,7 @@ want() { # want WHAT NAME LIMIT
 expect 2 "no input" -o new.obj --planar
 expect 2 "no output" grid.obj --planar
 expect 2 "nothing is asked for" grid.obj -o new.obj
-expect 2 "must end in .obj or .off" grid.obj -o new.stl --planar
+expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.fbx --planar
 expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
@@ -172,8 +172,12 @@ expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0.3,
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset 0,old.obj
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset old.obj
 expect 2 "expected DISTANCE,FILE" grid.obj -o new.obj --planar --offset inf,old.obj
-expect 2 "must end in .obj or .off" grid.obj -o new.obj --planar --offset 0.3,new.stl
-expect 2 "must end in .obj or .off" grid.obj -o new.obj --planar --offset 0.3,old.obj --support new
+expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.obj --planar --offset 0.3,new.fbx
+expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.obj --planar --offset 0.3,old.obj --support new
+expect 2 "expected little, big or ascii; did you mean little?" grid.obj -o new.ply --planar --encoding litle
+expect 2 "--encoding is for outputs that end in" grid.obj -o new.obj --planar --encoding ascii
+expect 2 "--encoding big is not for STL" grid.obj -o new.stl --planar --encoding big
+expect 2 "--encoding big is not for STL" grid.obj -o new.ply --planar --encoding big --offset 0.3,old.STL
 expect 2 "add --offset" grid.obj -o new.obj --planar --support old.obj
 expect 2 "same path" grid.obj -o new.obj --planar --offset 0.3,new.obj
 expect 2 "same path" grid.obj -o new.obj --planar --offset 0.3,old.obj --support old.obj
@@ -188,7 +192,7 @@ expect 2 "did you mean corners?" grid.obj -o new.obj --equilibrium --supports co
 expect 2 "did you mean boundary?" grid.obj -o new.obj --planar --glide boundray
 expect 2 "--glide edge: there is no such file; expected boundary, or an OBJ file" grid.obj -o new.obj --planar --glide edge
 expect 2 "did you mean area?" grid.obj -o new.obj --planar --picture new.svg --colour aera
-for weld in 0 -1 2 x nan; do
+for weld in -1 2 x nan; do
     expect 2 "expected a distance in mean edge lengths" grid.obj -o new.obj --planar --weld=$weld
 done
 expect 2 "--allow-spoiled takes no value" grid.obj -o new.obj --planar --allow-spoiled=1
@@ -242,11 +246,15 @@ awk 'BEGIN { n = 12; t = 6.283185307179586
 printf 'OFF\n4 1 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 1 2 3 4\n' | refuse one.off
 grep -q "seem to be counted from 1" err.txt && pass || fail "OFF that counts from 1: $(cat err.txt)"
 printf 'ply\nformat ascii 1.0\nelement vertex 3\n' | refuse words.ply
-grep -q "this is a PLY file.*write it as OBJ" err.txt && pass || fail "PLY: $(cat err.txt)"
+grep -q "words.ply: line 4: the file ends before 'end_header'" err.txt && pass || fail "PLY: $(cat err.txt)"
 printf 'solid roof\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n' | refuse facets.stl
-grep -q "this is an STL file.*Blender, MeshLab or assimp" err.txt && pass || fail "STL: $(cat err.txt)"
+grep -q "facets.stl: line 5: the text ends where 'vertex' is expected" err.txt && pass || fail "STL: $(cat err.txt)"
+printf 'solid roof\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n' | refuse facets.obj
+grep -q "this is an STL file: its name must end in .stl" err.txt && pass || fail "STL named .obj: $(cat err.txt)"
+head -c 300 /dev/urandom | tr -d '\000' | refuse noise.stl
+grep -q "noise.stl: byte 80: " err.txt && pass || fail "no STL: $(cat err.txt)"
 printf 'abc\0\0' | refuse model.3dm
-grep -q "a .3dm file, and only OBJ and OFF are read" err.txt && pass || fail "an ending: $(cat err.txt)"
+grep -q "a .3dm file, and only OBJ, OFF, STL and PLY are read" err.txt && pass || fail "an ending: $(cat err.txt)"
 expect 3 "missing.obj" missing.obj -o old.obj --planar
 expect 3 "missing.obj" grid.obj -o old.obj --planar --reference missing.obj=0.1
 expect 3 "missing.obj" grid.obj -o old.obj --planar --glide missing.obj
@@ -396,6 +404,59 @@ run torn.obj -o welded.obj --fix 0 --closeness 0 --weld
 [ $status -eq 0 ] && [ "$(counts welded.obj)" != "81 64" ] && pass || fail "--weld joins what is 1e-4 apart"
 run torn.obj -o welded.obj --fix 0 --closeness 0 --weld=1e-3
 [ $status -eq 0 ] && [ "$(counts welded.obj)" = "81 64" ] && pass || fail "--weld=1e-3: exit $status, $(counts welded.obj)"
+awk '$1 == "v" && ++n > 64 { printf "v %.17g %s %s\n", $2 + 1e-12, $3, $4; next } { print }' soup.obj >torn.obj
+run torn.obj -o welded.obj --fix 0 --closeness 0 --weld=0
+[ $status -eq 0 ] && [ "$(counts welded.obj)" != "81 64" ] && pass || fail "--weld=0 joins what is 1e-12 apart"
+run soup.obj -o welded.obj --fix 0 --closeness 0 --weld=0
+[ $status -eq 0 ] && [ "$(counts welded.obj)" = "81 64" ] && pass || fail "--weld=0: exit $status, $(counts welded.obj)"
+
+# STL and PLY: PLY brings back all; triangles of an STL are joined by --weld, and those that are none left out.
+still='--fix 0 --closeness 0 --allow-spoiled'
+run grid.obj -o base.obj $still
+for encoding in little big ascii; do
+    run grid.obj -o same.ply $still --encoding $encoding
+    run same.ply -o same.obj $still
+    [ $status -eq 0 ] && cmp -s same.obj base.obj && pass || fail "PLY, $encoding: exit $status, $(cat err.txt)"
+done
+cp same.ply same.unknown
+run same.unknown -o same.obj $still
+[ $status -eq 0 ] && cmp -s same.obj base.obj && pass || fail "PLY by its first word: $(cat err.txt)"
+run grid.obj -o same.ply $still
+run <(cat same.ply) -o same.obj $still
+[ $status -eq 0 ] && cmp -s same.obj base.obj && pass || fail "a binary PLY from a pipe: $(cat err.txt)"
+for encoding in little ascii; do
+    run grid.obj -o same.stl $still --encoding $encoding
+    run same.stl -o same.obj $still
+    [ $status -eq 0 ] && [ "$(counts same.obj)" = "384 128" ] && grep -q '303 boundary vertices are at the same place' out.txt &&
+        pass || fail "STL, $encoding: exit $status, $(counts same.obj), $(cat err.txt)"
+    run same.stl -o same.obj $still --weld=0
+    [ $status -eq 0 ] && [ "$(counts same.obj)" = "81 128" ] && grep -q ' 1 boundary loop$' out.txt && pass ||
+        fail "STL with --weld=0, $encoding: exit $status, $(counts same.obj)"
+done
+for size in 83 84 134 6483; do
+    head -c $size same.stl >cut.stl
+    expect 3 "cut.stl: " cut.stl -o new.obj $still
+done
+sed 's/^endsolid.*//' same.stl >slivers.stl
+printf 'facet normal 0 0 0\nouter loop\nvertex 0 0 %s\nvertex 1 0 1\nvertex 0 0 %s\nendloop\nendfacet\n' 5 5 5 5.0000001 >>slivers.stl
+echo endsolid >>slivers.stl
+run slivers.stl -o same.obj $still --weld
+grep -q '1 triangles with two corners at one place were left out, the first before face 128' out.txt && pass || fail "slivers: $(cat out.txt)"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0\nv 1 1e-9 0\nv 1 1 0\nv 1 1e-9 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 4 6 5\nf 7 8 9\n' >thin.obj
+run thin.obj -o same.obj $still --weld
+[ "$(counts same.obj)" = "4 2" ] && grep -q '1 faces had fewer than 3 corners left after merging' out.txt && pass ||
+    fail "a collapsing triangle: $(counts same.obj), $(cat out.txt err.txt)"
+sed '1s/.*/&\nfacet normal 0 0 0\nouter loop\nvertex 9 9 0\nvertex 9 9 1\nvertex 9 9 2\nendloop\nendfacet/' same.stl >line.stl
+run line.stl -o same.obj $still
+grep -q '1 faces have no area' out.txt && pass || fail "a triangle without an area: $(cat out.txt err.txt)"
+(cat same.stl; yes '                    ' | head -c 2000000) >long.stl
+expect 3 "long.stl: more than 1 MB" long.stl -o new.obj $still --file-limit 1
+ln -s /dev/zero zero.ply
+expect 3 "zero.ply: more than 2 MB, or without end" zero.ply -o new.obj $still --file-limit 2
+run grid.obj -o flat.ply --planar --offset 0.2,offset.stl --support support.ply --encoding ascii
+[ "$(grep -c '^facet' offset.stl)" = 128 ] && grep -q '^element face 144$' support.ply && head -n 1 flat.ply | grep -qx ply && pass ||
+    fail "offset and support as STL and PLY: $(cat err.txt)"
+
 run grid.obj -o welded.obj --planar --weld
 [ $status -eq 0 ] && ! grep -q 'note:' out.txt && pass || fail "--weld of a mesh without seams: $(cat out.txt)"
 { cat grid.obj; awk '/^v /' grid.obj; awk '/^f / { print "f", $2 + 81, $3 + 81, $4 + 81, $5 + 81 }' grid.obj; } >double.obj

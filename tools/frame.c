@@ -276,7 +276,7 @@ static bool read_command_line(tool *t, int argc, char **argv) {
 static char *load_text(tool *t, const char *path) {
     gproj_error error;
     size_t length;
-    char *text = gprojx_load_file(path, true, MEGABYTES, &length, &error);
+    char *text = gprojx_load_file(path, gprojx_any_text, MEGABYTES, &length, &error);
     if (!text) fail_error(t, path, ": ", &error);
     if (text && strlen(text) < length) fail(t, EXIT_REFUSED, "%s: a zero byte; this is no text", path);
     if (t->exit_code == 0) return text;

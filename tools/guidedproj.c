@@ -28,6 +28,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "formats.h"
+#include "panels.h"
 #include "picture.h"
 #include "readers.h"
 #include "report.h"
@@ -49,7 +51,7 @@ enum {
     EXIT_MEMORY = 4
 };
 enum {
-    MOST_OPTIONS = 64,
+    MOST_OPTIONS = 96,
     MOST_ITERATIONS = 100000,
     MOST_THREADS = 256,
     MOST_MEGABYTES = 1000000,
@@ -100,6 +102,8 @@ enum {
     OUTPUT_FORCES,
     OUTPUT_OFFSET,
     OUTPUT_SUPPORT,
+    OUTPUT_PANELS,
+    OUTPUT_PANEL_LIST,
     OUTPUT_STATE, /* and an input, where the file exists */
     OUTPUT_COUNT
 };
@@ -112,7 +116,9 @@ typedef struct tool {
     tool_sides sides;
     tool_subdivision subdivision;
     double lift; /* 0: none */
-    double weld; /* in mean edge lengths; 0: vertices at the same place stay apart */
+    bool welds;  /* else vertices at the same place stay apart */
+    double weld; /* in mean edge lengths */
+    gprojx_encoding encoding;
     tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
         supports, reference, closeness, equal_areas;
     tool_demand own[MOST_OPTIONS];   /* by row: options that only their builders read */
@@ -128,6 +134,7 @@ typedef struct tool {
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
+    gprojx_panel_options sheet;
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
     const char *title;                /* of the picture; NULL: the name of the output */
@@ -140,7 +147,10 @@ typedef struct tool {
     gproj_mesh *mesh, *reference_mesh;
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
+    gprojx_panels *panels;
+    gprojx_reading reading; /* of the input */
     int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
+    int32_t collapsed;     /* faces that merging left with fewer than 3 vertices */
     gproj_surface *surface;
     gproj_curve **curve;
     int32_t curve_count;
@@ -435,6 +445,30 @@ static bool set_positive(tool *t, void *place, const char *name, const char *val
            fail_value(t, name, value, "a number larger than 0");
 }
 
+/* Reads WIDTH,HEIGHT[,GAP] in millimetres. */
+static bool set_sheet(tool *t, void *place, const char *name, const char *value) {
+    gprojx_panel_options *sheet = (gprojx_panel_options *)place;
+    double *number[3] = {&sheet->width, &sheet->height, &sheet->gap};
+    const char *at = value;
+    int k;
+    for (k = 0; k < 3; ++k, ++at) {
+        size_t size = strcspn(at, ",");
+        if (!gprojx_read_number(at, size, number[k]) || !(*number[k] > 0) || *number[k] > 1e9) break;
+        at += size;
+        if (!*at && k >= 1 && 2 * sheet->gap < fmin(sheet->width, sheet->height)) return true;
+        if (!*at) break;
+    }
+    return fail_value(t, name, value,
+                      "WIDTH,HEIGHT or WIDTH,HEIGHT,GAP in millimetres, above 0 and at most 1e9, with a gap below half "
+                      "of both");
+}
+
+static bool set_panel_scale(tool *t, void *place, const char *name, const char *value) {
+    double *scale = (double *)place;
+    return (gprojx_read_number(value, strlen(value), scale) && *scale >= 1e-9 && *scale <= 1e9) ||
+           fail_value(t, name, value, "the millimetres that a unit of the mesh is (1e-9 to 1e9)");
+}
+
 static bool read_count(tool *t, int32_t *count, const char *name, const char *value, int32_t low, int32_t high) {
     return gprojx_read_integer(value, strlen(value), low, high, count) ||
            fail(t, EXIT_USAGE, "--%s %s: expected a whole number from %d to %d", name, value, (int)low, (int)high);
@@ -478,6 +512,19 @@ static bool set_sides(tool *t, void *place, const char *name, const char *value)
     }
 }
 
+static bool set_encoding(tool *t, void *place, const char *name, const char *value) {
+    static const char *const words[] = {"little", "big", "ascii", NULL}; /* as in gprojx_encoding */
+    char hint[HINT_SIZE];
+    int i;
+    for (i = 0; words[i]; ++i)
+        if (strcmp(value, words[i]) == 0) {
+            *(gprojx_encoding *)place = (gprojx_encoding)i;
+            return true;
+        }
+    return fail(t, EXIT_USAGE, "--%s %s: expected little, big or ascii%s", name, value,
+                did_you_mean(value, strlen(value), words, hint));
+}
+
 static bool set_lift(tool *t, void *place, const char *name, const char *value) {
     double *lift = (double *)place;
     return (gprojx_read_number(value, strlen(value), lift) && fabs(*lift) > 0 && fabs(*lift) <= 1e50) ||
@@ -487,8 +534,9 @@ static bool set_lift(tool *t, void *place, const char *name, const char *value) 
 static bool set_weld(tool *t, void *place, const char *name, const char *value) {
     double *weld = (double *)place;
     *weld = SAME_PLACE;
-    return !value || (gprojx_read_number(value, strlen(value), weld) && *weld > 0 && *weld <= 1) ||
-           fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, above 0 and at most 1", name, value);
+    t->welds = true;
+    return !value || (gprojx_read_number(value, strlen(value), weld) && *weld >= 0 && *weld <= 1) ||
+           fail(t, EXIT_USAGE, "--%s=%s: expected a distance in mean edge lengths, from 0 to 1", name, value);
 }
 
 static bool add_word(tool *t, tool_demand *words, int32_t *count, const char *name, const char *value) {
@@ -728,9 +776,9 @@ static bool prepare_outputs(tool *t) {
 
 /* Recognises the ending of a file that other programs can convert; "" for others. */
 static const char *foreign_ending(const char *path) {
-    static const char *const endings[] = {".stl", ".ply", ".gltf", ".glb", ".step", ".stp", ".iges", ".igs",
-                                          ".fbx", ".dae", ".3ds",  ".3mf", ".3dm",  ".dxf", ".dwg",  ".skp",
-                                          ".ifc", ".x3d", ".wrl",  ".usd", ".usdz", ".vtk", ".blend"};
+    static const char *const endings[] = {".gltf", ".glb", ".step", ".stp", ".iges", ".igs", ".fbx",
+                                          ".dae",  ".3ds", ".3mf",  ".3dm", ".dxf",  ".dwg", ".skp",
+                                          ".ifc",  ".x3d", ".wrl",  ".usd", ".usdz", ".vtk", ".blend"};
     size_t i;
     for (i = 0; i < sizeof endings / sizeof endings[0]; ++i)
         if (has_ending(path, endings[i])) return endings[i];
@@ -744,10 +792,12 @@ static char *copy_text(tool *t, const char *text, size_t size) {
     return copy;
 }
 
+static bool is_obj_or_off(const void *bytes, size_t size) { return gprojx_format_of(bytes, size) == GPROJX_NEITHER; }
+
 /* See gprojx_load_file. */
-static char *load_file(tool *t, const char *path, bool text, size_t *length) {
+static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t *length) {
     gproj_error error;
-    char *bytes = gprojx_load_file(path, text, t->file_limit, length, &error);
+    char *bytes = gprojx_load_file(path, is_text, t->file_limit, length, &error);
     if (!bytes && error.code == GPROJ_ERROR_MEMORY) fail_memory(t);
     if (!bytes) fail(t, EXIT_REFUSED, "%s: %s", path, error.message);
     return bytes;
@@ -756,33 +806,55 @@ static char *load_file(tool *t, const char *path, bool text, size_t *length) {
 /* A text that is no mesh. */
 static char *load_text(tool *t, const char *path) {
     size_t length;
-    char *text = load_file(t, path, true, &length);
+    char *text = load_file(t, path, gprojx_any_text, &length);
     if (!text || strlen(text) == length) return text;
     fail(t, EXIT_REFUSED, "%s: a zero byte; this is a device, a binary file or UTF-16, not a text", path);
     free(text);
     return NULL;
 }
 
-static gproj_mesh *load(tool *t, const char *path, size_t size) {
+/* Tells the formats that the library leaves to formats.h by the ending. */
+static gprojx_format format_named(const char *path) {
+    return has_ending(path, ".stl") ? GPROJX_STL : has_ending(path, ".ply") ? GPROJX_PLY : GPROJX_NEITHER;
+}
+
+/* Reads a file with the format of the ending, else of the first word. */
+static char *load_mesh_file(tool *t, const char *path, gprojx_format *format, size_t *size) {
+    bool named = has_ending(path, ".obj") || has_ending(path, ".off");
+    char *bytes;
+    *format = format_named(path);
+    bytes = load_file(t, path, *format != GPROJX_NEITHER ? NULL : named ? gprojx_any_text : is_obj_or_off, size);
+    if (bytes && *format == GPROJX_NEITHER && !named) *format = gprojx_format_of(bytes, *size);
+    return bytes;
+}
+
+/* Loads the mesh at path[0..size-1]. reading: NULL, or of an STL what was left out. */
+static gproj_mesh *load(tool *t, const char *path, size_t size, gprojx_reading *reading) {
     gproj_error error;
     gproj_mesh *mesh = NULL;
-    gproj_format format;
+    gprojx_format foreign;
     size_t length;
     char *copy = copy_text(t, path, size), *text;
     if (!copy) return NULL;
-    text = load_file(t, copy, true, &length);
-    if (text) {
-        format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
-                 : has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
-                                            : GPROJ_FORMAT_DETECT;
+    text = load_mesh_file(t, copy, &foreign, &length);
+    if (text && foreign != GPROJX_NEITHER) {
+        mesh = gprojx_mesh_read(text, length, foreign, reading, &t->host, &error);
+    } else if (text) {
+        gproj_format format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
+                              : has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
+                                                         : GPROJ_FORMAT_DETECT;
         mesh = gproj_mesh_read(text, length, format, &t->host, &error);
         if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
             fail(t, EXIT_REFUSED,
-                 "%s: a %s file, and only OBJ and OFF are read: write it as OBJ, for example by Blender, "
-                 "MeshLab or assimp (%s)",
+                 "%s: a %s file, and only OBJ, OFF, STL and PLY are read: write it as one of these, for example by "
+                 "Blender, MeshLab or assimp (%s)",
                  copy, foreign_ending(copy), error.message);
-        if (!mesh) fail_library(t, copy, &error);
+        if (!mesh && gprojx_format_of(text, length) != GPROJX_NEITHER)
+            fail(t, EXIT_REFUSED, "%s: this is %s file: its name must end in %s, or in none of .obj and .off", copy,
+                 gprojx_format_of(text, length) == GPROJX_PLY ? "a PLY" : "an STL",
+                 gprojx_format_of(text, length) == GPROJX_PLY ? ".ply" : ".stl");
     }
+    if (text && !mesh) fail_library(t, copy, &error);
     free(text), free(copy);
     return mesh;
 }
@@ -847,7 +919,7 @@ static int32_t take_curve(const gproj_mesh *file, double *point) {
 static bool fill_curve(tool *t) {
     const gproj_fill_options options = {.side_count = t->sides.count, .subdivisions = t->sides.edges};
     gproj_error error;
-    gproj_mesh *file = load(t, t->fill, strlen(t->fill));
+    gproj_mesh *file = load(t, t->fill, strlen(t->fill), NULL);
     double *point;
     int32_t count;
     if (!file) return false;
@@ -969,35 +1041,47 @@ static int32_t find_seams(tool *t, double distance, int32_t *same) {
     return merged;
 }
 
-/* Makes one vertex of those at the same place; `merged` of them go. */
+/* Writes a face's corners by their numbers, without repeated neighbours. Returns their count; 0 if fewer than 3. */
+static int32_t weld_face(const gproj_mesh *mesh, int32_t face, int32_t *same, const int32_t *number, int32_t *corner) {
+    int32_t h = mesh->face_halfedge[face], count = 0, k;
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+        corner[count] = number[same_as(same, mesh->origin[h])];
+        count += count == 0 || corner[count] != corner[count - 1];
+    }
+    while (count > 1 && corner[count - 1] == corner[0]) --count;
+    return count < 3 ? 0 : count;
+}
+
+/* Makes one vertex of those at the same place; `merged` of them go, and faces that are then none. */
 static bool weld(tool *t, int32_t *same, int32_t merged) {
     gproj_mesh *old = t->mesh;
     size_t vertices = (size_t)old->vertex_count, at = 0;
     double *position = (double *)take(t, 3 * vertices, sizeof *position);
     int32_t *number = (int32_t *)take(t, vertices, sizeof *number);
-    int32_t *corner = (int32_t *)take(t, (size_t)old->halfedge_count, sizeof *corner), count = 0, i, k;
+    int32_t *degree = (int32_t *)take(t, (size_t)old->face_count, sizeof *degree);
+    int32_t *corner = (int32_t *)take(t, (size_t)old->halfedge_count, sizeof *corner), count = 0, faces = 0, i;
     gproj_error error;
     /* Vertices that stay are numbered anew, in their order; faces then speak of these numbers. */
-    for (i = 0; position && number && corner && i < old->vertex_count; ++i) {
+    for (i = 0; t->exit_code == 0 && i < old->vertex_count; ++i) {
         if (same_as(same, i) != i) continue;
         memcpy(position + 3 * (size_t)count, old->position + 3 * (size_t)i, 3 * sizeof *position);
         number[i] = count++;
     }
-    for (i = 0; position && number && corner && i < old->face_count; ++i) {
-        int32_t h = old->face_halfedge[i];
-        for (k = 0; k < old->face_degree[i]; ++k, h = old->next[h])
-            corner[at++] = number[same_as(same, old->origin[h])];
+    for (i = 0; t->exit_code == 0 && i < old->face_count; ++i) {
+        degree[faces] = weld_face(old, i, same, number, corner + at);
+        at += (size_t)degree[faces], faces += degree[faces] > 0;
     }
     if (t->exit_code == 0) {
-        t->mesh = gproj_mesh_create(count, position, old->face_count, old->face_degree, corner, &t->host, &error);
+        t->mesh = gproj_mesh_create(count, position, faces, degree, corner, &t->host, &error);
         if (!t->mesh && error.code == GPROJ_ERROR_MEMORY)
             fail_memory(t);
         else if (!t->mesh)
             fail(t, EXIT_REFUSED, "%s: after --weld: %s", t->input, error.message);
+        t->collapsed = old->face_count - faces;
         gproj_mesh_destroy(old);
         t->welded = merged;
     }
-    free(position), free(number), free(corner);
+    free(position), free(number), free(degree), free(corner);
     return t->exit_code == 0;
 }
 
@@ -1005,9 +1089,9 @@ static bool weld(tool *t, int32_t *same, int32_t merged) {
 static bool treat_seams(tool *t) {
     int32_t *same = (int32_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *same);
     double edge = gproj_mesh_mean_edge_length(t->mesh);
-    int32_t merged = same ? find_seams(t, (t->weld > 0 ? t->weld : SAME_PLACE) * edge, same) : -1;
+    int32_t merged = same ? find_seams(t, (t->welds ? t->weld : SAME_PLACE) * edge, same) : -1;
     bool good = merged >= 0;
-    if (good && t->weld > 0 && merged > 0)
+    if (good && t->welds && merged > 0)
         good = weld(t, same, merged);
     else if (good)
         t->seams = merged;
@@ -1020,7 +1104,7 @@ static bool make_mesh(tool *t) {
     if (t->fill) {
         if (!fill_curve(t)) return false;
     } else {
-        t->mesh = load(t, t->input, strlen(t->input));
+        t->mesh = load(t, t->input, strlen(t->input), &t->reading);
         if (!t->mesh) return false;
         if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
         if (!treat_seams(t)) return false;
@@ -1177,7 +1261,7 @@ static bool add_gliding(tool *t, const tool_demand *word) {
         char *name = copy_text(t, word->text, word->length);
         gproj_mesh *mesh = NULL;
         if (name && must_exist(t, "--glide", name, "boundary, or an OBJ file with polylines", words))
-            mesh = load(t, word->text, word->length);
+            mesh = load(t, word->text, word->length, NULL);
         free(name);
         good = mesh && add_curves(t, mesh, false, word->text);
         gproj_mesh_destroy(mesh);
@@ -1195,7 +1279,7 @@ static int32_t add_all_gliding(tool *t, const tool_demand *none) {
 
 static int32_t add_reference(tool *t, const tool_demand *demand) {
     gproj_error error;
-    t->reference_mesh = load(t, demand->text, demand->length);
+    t->reference_mesh = load(t, demand->text, demand->length, NULL);
     if (!t->reference_mesh) return -1;
     t->surface = gproj_surface_create(t->reference_mesh, &t->host, &error);
     if (!t->surface) fail_library(t, demand->text, &error);
@@ -1324,6 +1408,7 @@ static const tool_need a_curve = {PLACE(fill), "are those of a curve: add --fill
 static const tool_need a_picture = {PLACE(output[OUTPUT_PICTURE]), "is for a picture: add --picture FILE.svg"};
 static const tool_need an_offset = {PLACE(output[OUTPUT_OFFSET]),
                                     "is between the mesh and its offset: add --offset DISTANCE,FILE.obj"};
+static const tool_need panels = {PLACE(output[OUTPUT_PANELS]), "is about panels: add --panels FILE.svg or FILE.dxf"};
 static const tool_need normals = {PLACE(planar), "needs the normals of planar faces: add --planar"};
 static const tool_need statics = {
     PLACE(equilibrium),
@@ -1332,8 +1417,13 @@ static const tool_need statics = {
 
 /* --help shows the rows as they stand here. */
 static const tool_option options[] = {
-    {"output", "FILE", "the result, .obj or .off (needed)", set_output, SETS(output[OUTPUT_MESH]), .letter = 'o',
-     .section = "files"},
+    {"output", "FILE", "the result, .obj, .off, .stl or .ply (needed)", set_output, SETS(output[OUTPUT_MESH]),
+     .letter = 'o', .section = "files"},
+    {"encoding", "WORD",
+     "of .stl and .ply outputs: little (binary, little-endian, if left out), big (PLY only) or ascii. PLY keeps all "
+     "digits, "
+     "binary STL those of floats; STL has triangles only",
+     set_encoding, SETS(encoding)},
     {"file-limit", "MB", "files are read up to this size (1024)", set_file_limit, SETS(file_limit)},
 
     {"fill", "CURVE",
@@ -1348,8 +1438,9 @@ static const tool_option options[] = {
      "triangle four (Loop). The cage's vertices keep their numbers",
      set_subdivision, SETS(subdivision), .kind = BEGINNING},
     {"weld", "[=TOL]",
-     "boundary vertices at the same place, within TOL mean edge lengths (1e-6), become one: seams are closed. Vertices "
-     "are numbered anew, and polylines left out",
+     "boundary vertices at the same place, within TOL mean edge lengths (1e-6; 0: exactly), become one: seams are "
+     "closed, "
+     "and the triangles of an STL joined. Vertices are numbered anew, and polylines left out",
      set_weld, SETS(weld)},
     {"lift", "HEIGHT", "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly",
      set_lift, SETS(lift), .kind = BEGINNING},
@@ -1474,11 +1565,30 @@ static const tool_option options[] = {
      SETS(colour), .needs = &a_picture},
     {"title", "TEXT", "of the picture (the name of the output)", set_text, SETS(title), .needs = &a_picture},
     {"offset", "DISTANCE,FILE",
-     "the parallel mesh at this distance, .obj or .off: of the vertices with --circular alone, else of the faces "
+     "the parallel mesh at this distance, in a format as the output's: of the vertices with --circular alone, else of "
+     "the faces "
      "(exact with --conical)",
      set_offset, SETS(output[OUTPUT_OFFSET])},
-    {"support", "FILE", "the panels between the mesh and its --offset, .obj or .off: one quad an edge", set_output,
-     SETS(output[OUTPUT_SUPPORT]), .needs = &an_offset},
+    {"support", "FILE", "the panels between the mesh and its --offset, in a format as the output's: one quad an edge",
+     set_output, SETS(output[OUTPUT_SUPPORT]), .needs = &an_offset},
+    {"panels", "FILE",
+     "the faces laid flat at true size on sheets, to be cut, .svg or .dxf (R12), in millimetres: each with its number "
+     "and, "
+     "along the edges, the neighbours' numbers and dihedral angles, measured behind (below 180 degrees a ridge, above "
+     "a "
+     "valley). With --support also its panels (S and the edge's number). Refused, by name, where a panel is not planar "
+     "to "
+     "1e-6 of half its perimeter",
+     set_output, SETS(output[OUTPUT_PANELS])},
+    {"panel-list", "FILE", "CSV: the panels' areas and sizes, their edges' lengths and dihedral angles", set_output,
+     SETS(output[OUTPUT_PANEL_LIST]), .needs = &panels},
+    {"sheet", "W,H[,GAP]",
+     "of the panels: width and height in mm, and the gap between panels and at the border (a twentieth of the mean "
+     "edge). "
+     "If left out, one sheet holds all",
+     set_sheet, SETS(sheet), .needs = &panels},
+    {"panel-scale", "S", "millimetres that a unit of the mesh is (1; 1000 for a mesh in metres)", set_panel_scale,
+     SETS(sheet.scale), .needs = &panels},
     {"quiet", "", "print errors only", set_flag, SETS(quiet)},
     {"help", "", "print this", set_flag, SETS(help), .letter = 'h'},
     {"version", "", "print the version", set_flag, SETS(version)},
@@ -1524,7 +1634,7 @@ static void print_wrapped(const char *text, int at, int indent) {
 
 static void print_help(void) {
     int i;
-    puts("usage: guidedproj INPUT.{obj,off} -o OUTPUT.{obj,off} OPTIONS\n\n"
+    puts("usage: guidedproj INPUT.{obj,off,stl,ply} -o OUTPUT.{obj,off,stl,ply} OPTIONS\n\n"
          "Moves the vertices of a polygon mesh so that what must hold holds to machine\n"
          "precision, guided by what is wished. Vertices count from 0.");
     for (i = 0; i < OPTION_COUNT; ++i) {
@@ -1638,6 +1748,19 @@ static bool check_needs(tool *t) {
     return true;
 }
 
+/* Refuses names that do not end like a mesh file. */
+static bool check_mesh_output(tool *t, const tool_output *output) {
+    const char *path = output->path;
+    if (!path || has_ending(path, ".obj") || has_ending(path, ".off") || has_ending(path, ".ply")) return true;
+    if (!has_ending(path, ".stl"))
+        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj, .off, .stl or .ply", path);
+    return t->encoding != GPROJX_BIG || fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
+}
+
+static bool is_foreign(const tool *t, int output) {
+    return t->output[output].path && format_named(t->output[output].path) != GPROJX_NEITHER;
+}
+
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     int i;
@@ -1647,8 +1770,7 @@ static bool check_options(tool *t) {
     if (t->fill) t->input = t->fill;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
     if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
-    if (!has_ending(output, ".obj") && !has_ending(output, ".off"))
-        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
+    if (!check_mesh_output(t, &t->output[OUTPUT_MESH])) return false;
     if (!anything_asked(t))
         return fail(t, EXIT_USAGE,
                     "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
@@ -1662,11 +1784,17 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
     if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--state is a file: give its name");
-    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i) {
-        output = t->output[i].path;
-        if (output && !has_ending(output, ".obj") && !has_ending(output, ".off"))
-            return fail(t, EXIT_USAGE, "the output '%s' must end in .obj or .off", output);
-    }
+    output = t->output[OUTPUT_PANELS].path;
+    if (output && !has_ending(output, ".svg") && !has_ending(output, ".dxf"))
+        return fail(t, EXIT_USAGE, "the panels '%s' must end in .svg or .dxf", output);
+    output = t->output[OUTPUT_PANEL_LIST].path;
+    if (output && !has_ending(output, ".csv"))
+        return fail(t, EXIT_USAGE, "the list of panels '%s' must end in .csv", output);
+    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i)
+        if (!check_mesh_output(t, &t->output[i])) return false;
+    if (is_given(t, PLACE(encoding)) && !is_foreign(t, OUTPUT_MESH) && !is_foreign(t, OUTPUT_OFFSET) &&
+        !is_foreign(t, OUTPUT_SUPPORT))
+        return fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
     if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
@@ -1857,7 +1985,7 @@ static bool restore(tool *t) {
     size_t size;
     char *bytes;
     if (access(state->target, F_OK) != 0) return true;
-    bytes = load_file(t, state->path, false, &size);
+    bytes = load_file(t, state->path, NULL, &size);
     if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
     free(bytes);
     return t->exit_code == 0;
@@ -1934,6 +2062,13 @@ static bool make_offset(tool *t) {
     if (!t->output[OUTPUT_SUPPORT].path) return true;
     t->support = gproj_mesh_support(t->mesh, t->offset, &t->host, &error);
     return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
+}
+
+static bool make_panels(tool *t) {
+    gproj_error error;
+    if (!t->output[OUTPUT_PANELS].path) return true;
+    t->panels = gprojx_panels_create(t->mesh, t->support, &t->sheet, &error);
+    return t->panels || fail_library(t, t->output[OUTPUT_PANELS].path, &error);
 }
 
 /* The largest difference between a distance and the one that was asked for. */
@@ -2061,18 +2196,31 @@ static bool write_piece(void *user, const char *text, size_t size) {
     return fwrite(text, 1, size, (FILE *)user) == size;
 }
 
-static gproj_code write_as(const gproj_mesh *mesh, const char *path, FILE *file) {
-    gproj_format format = has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ;
-    return gproj_mesh_write(mesh, format, write_piece, file, NULL);
+static gproj_code write_as(tool *t, gproj_mesh *mesh, int output, FILE *file) {
+    const char *path = t->output[output].path;
+    gprojx_format foreign = format_named(path);
+    gproj_error error;
+    gproj_code code;
+    if (foreign == GPROJX_NEITHER)
+        return gproj_mesh_write(mesh, has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ, write_piece, file,
+                                NULL);
+    code = gprojx_mesh_write(mesh, foreign, t->encoding, write_piece, file, &error);
+    if (code != GPROJ_OK && code != GPROJ_ERROR_FILE) fail_library(t, path, &error);
+    return code;
 }
 
-static gproj_code write_mesh(tool *t, FILE *file) { return write_as(t->mesh, t->output[OUTPUT_MESH].path, file); }
+static gproj_code write_mesh(tool *t, FILE *file) { return write_as(t, t->mesh, OUTPUT_MESH, file); }
 
-static gproj_code write_offset(tool *t, FILE *file) { return write_as(t->offset, t->output[OUTPUT_OFFSET].path, file); }
+static gproj_code write_offset(tool *t, FILE *file) { return write_as(t, t->offset, OUTPUT_OFFSET, file); }
 
-static gproj_code write_support(tool *t, FILE *file) {
-    return write_as(t->support, t->output[OUTPUT_SUPPORT].path, file);
+static gproj_code write_support(tool *t, FILE *file) { return write_as(t, t->support, OUTPUT_SUPPORT, file); }
+
+static gproj_code write_panels(tool *t, FILE *file) {
+    bool dxf = has_ending(t->output[OUTPUT_PANELS].path, ".dxf");
+    return dxf ? gprojx_panels_dxf(file, t->panels) : gprojx_panels_svg(file, t->panels);
 }
+
+static gproj_code write_panel_list(tool *t, FILE *file) { return gprojx_panels_csv(file, t->panels); }
 
 static gproj_code write_state(tool *t, FILE *file) {
     size_t size = gproj_state_size(t->form);
@@ -2267,6 +2415,8 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
         !write_output(t, &t->output[OUTPUT_OFFSET], write_offset) ||
         !write_output(t, &t->output[OUTPUT_SUPPORT], write_support) ||
+        !write_output(t, &t->output[OUTPUT_PANELS], write_panels) ||
+        !write_output(t, &t->output[OUTPUT_PANEL_LIST], write_panel_list) ||
         !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
@@ -2296,6 +2446,12 @@ static void print_mesh(const tool *t) {
            mesh->loop_count == 1 ? "" : "s");
     if (mesh->reoriented_count > 0)
         printf("note: %ld faces were turned round to agree with their neighbours\n", (long)mesh->reoriented_count);
+    if (t->reading.left_out > 0)
+        printf("note: %ld triangles with two corners at one place were left out, the first before face %ld\n",
+               (long)t->reading.left_out, (long)t->reading.first_left_out);
+    if (t->before.degenerate_faces > 0) printf("note: %ld faces have no area\n", (long)t->before.degenerate_faces);
+    if (t->collapsed > 0)
+        printf("note: %ld faces had fewer than 3 corners left after merging, and were left out\n", (long)t->collapsed);
     if (t->welded > 0)
         printf("note: %ld boundary vertices were merged with others at the same place; vertices are numbered anew\n",
                (long)t->welded);
@@ -2315,6 +2471,12 @@ static void print_offset(const tool *t) {
     if (m->reversed_edges > 0)
         printf("note: %ld edges of the offset run backwards: the distance is larger than a radius of curvature\n",
                (long)m->reversed_edges);
+}
+
+static void print_panels(const tool *t) {
+    const gprojx_panels *p = t->panels;
+    printf("panels        %ld on %ld sheet%s of %.6g x %.6g mm, %.0f %% covered\n", (long)p->count,
+           (long)p->sheet_count, p->sheet_count == 1 ? "" : "s", p->options.width, p->options.height, 100 * p->used);
 }
 
 /* The largest distance that a support moved. */
@@ -2363,6 +2525,7 @@ static void print_summary(const tool *t) {
     if (t->conical.given)
         printf("conicality    %.2e -> %.2e largest (radians)\n", b->conicality_max, a->conicality_max);
     if (t->offset) print_offset(t);
+    if (t->panels) print_panels(t);
     printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
            a->displacement_mean, a->deviation_max);
     print_asked(t);
@@ -2394,7 +2557,7 @@ static bool run(tool *t) {
     t->read_seconds = mark - t->start;
     if (!build_form(t)) return false;
     t->setup_seconds = now(NULL) - mark;
-    if (!solve(t) || !make_offset(t) || !write_outputs(t)) return false;
+    if (!solve(t) || !make_offset(t) || !make_panels(t) || !write_outputs(t)) return false;
     if (!t->quiet) print_summary(t);
     return finish_printing(t);
 }
@@ -2408,6 +2571,7 @@ static void clean_up(tool *t) {
     gproj_form_destroy(t->form);
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
+    gprojx_panels_destroy(t->panels);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
     gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
     gprojx_threads_destroy(t->pool);

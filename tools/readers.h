@@ -135,9 +135,15 @@ static bool gprojx_read_loads(const char *text, int32_t vertex_count, double *lo
 
 /* ---- files ---- */
 
-/* Returns a file of at most `megabytes` with a NUL behind it, by malloc; `length` does not count that. A `text` is read up
-   to the first zero byte, which no text has: devices give such bytes without end. */
-static char *gprojx_load_file(const char *path, bool text, int32_t megabytes, size_t *length, gproj_error *error) {
+/* Does a file with these first bytes go on as a text? */
+typedef bool (*gprojx_is_text)(const void *bytes, size_t size);
+
+static bool gprojx_any_text(const void *bytes, size_t size) { return (void)bytes, (void)size, true; }
+
+/* Returns a file of at most `megabytes` with a NUL behind it, by malloc; `length` does not count that. A text (NULL: it is
+   none) is read up to the first zero byte, which no text has: devices give such bytes without end. */
+static char *gprojx_load_file(const char *path, gprojx_is_text is_text, int32_t megabytes, size_t *length,
+                              gproj_error *error) {
     FILE *file = fopen(path, "rb");
     size_t size = 0, capacity = 0, got = 0, most = (size_t)megabytes << 20;
     char *bytes = NULL;
@@ -153,7 +159,8 @@ static char *gprojx_load_file(const char *path, bool text, int32_t megabytes, si
             bytes = moved;
         }
         got = fread(bytes + size, 1, capacity - size - 1, file);
-        more = got > 0 && !(text && memchr(bytes + size, 0, got));
+        if (is_text && !is_text(bytes, size + got)) is_text = NULL;
+        more = got > 0 && !(is_text && memchr(bytes + size, 0, got));
         size += got;
         bytes[size] = 0;
         if (ferror(file)) more = good = gprojx_refuse(error, GPROJ_ERROR_FILE, "%s", strerror(errno));
