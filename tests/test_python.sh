@@ -22,7 +22,7 @@ grep -q 'compiling .* once' "$work/said.txt" && pass || fail 'guidedproj.py comp
 
 clean 'guidedproj.py differs from the header' "$($python python_interface.py "$root/guidedproj.h" "$binding/guidedproj.py" \
     "$work" ${CC:-cc} 2>&1 | grep -vxE 'compared [7-9][0-9]{2}')"
-clean 'lines of more than 120 columns' "$(grep -nE '^.{126,}' "$binding"/*.py "$root"/examples/blender/*.py)"
+clean 'lines of more than 130 columns' "$(grep -nE '^.{131,}' "$binding"/*.py "$root"/examples/blender/*.py)"
 
 # ---- to the bit as in C: the program's library is Python's ----
 
@@ -99,13 +99,29 @@ ${CC:-cc} -w -I"$root" "$work/agree.c" "$library" -Wl,-rpath,"$(dirname "$librar
 
 # ---- the tests in Python ----
 
+sums() { # sums WHAT: adds up what a program has said in tests.txt, "PASSED FAILED" alone on a line near the end
+    read -r right wrong <<<"$(grep -xE '[0-9]+ [0-9]+' "$work/tests.txt" | tail -n 1)"
+    if [ -n "${wrong:-}" ]; then
+        passed=$((passed + right)) failed=$((failed + wrong))
+        grep -A9 '^FAILED' "$work/tests.txt" | head -n 60
+    else
+        fail "$1 has not come to its end:"
+        tail -n 30 "$work/tests.txt"
+    fi
+}
 timeout 600 $python test_python.py "$root" "$work" >"$work/tests.txt" 2>&1
-read -r right wrong <<<"$(tail -n 1 "$work/tests.txt" | grep -xE '[0-9]+ [0-9]+')"
-if [ -n "${wrong:-}" ]; then
-    passed=$((passed + right)) failed=$((failed + wrong))
-    grep -A9 '^FAILED' "$work/tests.txt" | head -n 60
+sums test_python.py
+
+# ---- the add-on, in a Blender without a window and with folders of its own ----
+
+if ! have blender; then
+    skip 'the add-on for Blender: no blender (Debian: blender)'
+elif ! blender --background --factory-startup --python-exit-code 3 --python-expr 'import numpy' >"$work/tests.txt" 2>&1; then
+    skip "the add-on for Blender: it does not start, or has no numpy: $(tail -n 1 "$work/tests.txt")"
 else
-    fail 'test_python.py has not come to its end:'
-    tail -n 30 "$work/tests.txt"
+    mkdir -p "$work/blender/config" "$work/blender/scripts"
+    BLENDER_USER_CONFIG=$work/blender/config BLENDER_USER_SCRIPTS=$work/blender/scripts HOME=$work/blender timeout 300 \
+        blender --background --factory-startup --python test_blender.py -- "$root" >"$work/tests.txt" 2>&1
+    sums test_blender.py
 fi
 report
