@@ -4,21 +4,28 @@
 # add-on for Blender runs where Blender is installed. Skipped without a python3 that has numpy.
 . "$(dirname "$0")/checks.sh"
 
-python=''
-for one in python3 /usr/bin/python3; do
-    [ -n "$python" ] || ! $one -c 'import numpy' >/dev/null 2>&1 || python=$one
-done
+python=$(python_with_numpy)
 [ -n "$python" ] || { skip 'Python: no python3 with numpy (Debian: python3-numpy)'; report; }
 have "${CC:-cc}" || { skip 'Python: no C compiler'; report; }
 binding=$root/examples/python
-export GUIDEDPROJ_CACHE=$work/cache PYTHONDONTWRITEBYTECODE=1 LC_ALL=C.UTF-8
+export GUIDEDPROJ_CACHE=$PWD/build/python PYTHONDONTWRITEBYTECODE=1 LC_ALL=C.UTF-8
 unset GUIDEDPROJ_LIBRARY
 mkdir "$work/empty"
 
+# The library is compiled once for all tests, as anyone does it; then a stand-in for the compiler shows when it is asked.
 library=$($python "$binding/guidedproj.py" 2>"$work/said.txt") && [ -f "$library" ] && pass ||
     { fail "guidedproj.py does not compile the library: $(cat "$work/said.txt")"; report; }
-grep -q 'compiling .* once' "$work/said.txt" && pass || fail 'guidedproj.py compiles without a word'
 [ "$($python "$binding/guidedproj.py" 2>&1)" = "$library" ] && pass || fail 'guidedproj.py compiles again'
+cat >"$work/compiler" <<END_OF_COMPILER
+#!/bin/bash
+while [ "\$1" != -o ]; do shift; done
+cp "$library" "\$2"
+END_OF_COMPILER
+chmod +x "$work/compiler"
+asked() { CC=$work/compiler GUIDEDPROJ_CACHE=$work/cache $python "$binding/guidedproj.py" "$@" 2>&1; }
+grep -q '^guidedproj: compiling .* once' <<<"$(asked)" && [ -f "$(asked)" ] && pass || fail "a new cache: $(asked)"
+[ "$(asked "$work/new/named.so")" = "$work/new/named.so" ] && [ "$(ls "$work/new")" = named.so ] && pass ||
+    fail 'guidedproj.py does not compile to the path that it is given'
 
 clean 'guidedproj.py differs from the header' "$($python python_interface.py "$root/guidedproj.h" "$binding/guidedproj.py" \
     "$work" ${CC:-cc} 2>&1 | grep -vxE 'compared [7-9][0-9]{2}')"
