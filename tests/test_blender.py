@@ -47,7 +47,7 @@ bpy.ops.preferences.addon_install(filepath=os.path.join(root, "examples", "blend
 sys.path.append(os.path.join(root, "examples", "python"))  # what the user puts beside it
 addon_utils.modules_refresh()
 bpy.ops.preferences.addon_enable(module="guidedproj_blender")
-import guidedproj  # noqa: E402
+import guidedproj
 
 roof = guidedproj.Mesh.load(os.path.join(root, "examples", "roof.obj"))
 corners = [v for v in range(roof.vertex_count) if roof.valence(v) == 2]

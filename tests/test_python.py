@@ -177,6 +177,7 @@ def test_meshes():
     lines = Mesh.read("v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\nl 3 1\n")
     check([list(line) for line in lines.polylines] == [[0, 1, 2], [2, 0]], lines.polylines)
     check(guidedproj.Curve.from_polyline(lines).closest([0.5, -1, 0]).point == (0.5, 0, 0), "a polyline as a curve")
+    check(repr(mesh) == "<Mesh of 7 vertices, 7 edges, 2 faces>", mesh)
     check("V" in dir(mesh) and "twin" in dir(mesh), "names of a mesh")
     raises(AttributeError, getattr, mesh, "nothing")
 
@@ -207,6 +208,10 @@ def test_lifetimes():
     part = V[3:5, 1]
     form.close()
     mesh.close()
+    again = Mesh(*dome())
+    other = Form(again)
+    again.close()
+    check(other.add_planarity() == 0 and other.V.shape == (81, 3), "the caller's mesh is closed, the form's is not")
     noise = [Form(*dome()) for _ in range(20)]  # what was freed too early would be written over
     check((V == copied).all() and (part == copied[3:5, 1]).all(), "a view after close()")
     V[0] = 7
@@ -354,6 +359,13 @@ def test_errors():
     raises(Error, form.find_reach, 4000, 1.0, code=Code.ERROR_INDEX)
     raises(Error, form.restore_state, b"nothing", code=Code.ERROR_SYNTAX)
     raises(ValueError, form.drag, [1, 2], start=[0, 5], says="start")
+    raises(ValueError, form.drag, [1, 2], start=[0, 500, 2], says="start")
+    raises(Error, form.drag, [1, 2], start=[0, 2, 1])
+    raises(ValueError, Mesh.load, "a\0b.obj", says="NUL")
+    raises(ValueError, form.add_lengths, [1, 2, 3], [1.0, 2.0])
+    form.add_rows("without a place")
+    raises(Error, form.set_element_weights, 0, None, 1.0)
+    form = Form(V, F)
     raises(Error, guidedproj.Curve, [[0, 0, 0]])
     raises(Error, guidedproj.fill, V[:3] * [1, 0, 0])
     edit = guidedproj.Edit(form.mesh)
@@ -508,12 +520,12 @@ def test_own_rows():
     group, started = form.add_rows("sphere", place=Place.VERTEX), []
 
     def start(V, values):
-        started.append(V.shape)
+        started.append((V.shape, values))
         values[:] = [*(V.mean(axis=0) - [0, 0, 8]), 9.0]
     centre = form.add_unknowns(group, np.zeros(3), Unit.POINT)
     radius = form.add_unknowns(group, [9.0], Unit.LENGTH)
     other = form.add_rows("other")
-    form.add_unknowns(other, np.ones(4), start=start)
+    first = form.add_unknowns(other, np.ones(4), start=start)
     for v in range(81):  # |v - c|^2 - r^2 = 0, over 2 r
         terms = [(3 * v + k, 3 * v + k, 1 / 18) for k in range(3)] + [(centre + k, centre + k, 1 / 18) for k in range(3)]
         terms += [(3 * v + k, centre + k, -1 / 9) for k in range(3)] + [(radius, radius, -1 / 18)]
@@ -522,7 +534,9 @@ def test_own_rows():
     c, r = form.get_unknowns(centre, 3), form.get_unknowns(radius, 1)[0]
     far = np.linalg.norm(form.V - c, axis=1)
     check(result.outcome == Outcome.CONVERGED and abs(far - abs(r)).max() < 1e-9, result.message, far.max() - r)
-    check(started and started[0] == (81, 3), "start values were asked for:", started)
+    check(len(started) == 2 and started[0][0] == (81, 3), "start values were asked for:", len(started))
+    check(form.get_unknowns(first, 4)[3] == 9.0 and started[0][1][3] == 9.0, "start values:", form.get_unknowns(first, 4))
+    started[0][1][:] = 0  # what a callback keeps is a copy
     form.set_element_weights(group, [0, 1], [0.0, 0.5])
     form.set_element_weights(group, None, 1.0)
     check(form.residuals(group).shape == (81,) and form.system.check_gradients() < 1e-6, "residuals by vertex")
@@ -683,6 +697,8 @@ def test_least_squares():
     class Columns:  # what scipy's csc_matrix shows
         shape, indptr, indices, data = (2, 2), np.array([0, 1, 3]), np.array([0, 0, 1]), np.array([2.0, 1.0, 4.0])
     check(np.allclose(guidedproj.least_squares(Columns, [3.0, 4.0])[0], [1, 1]), "columns")
+    Columns.indptr = np.array([0, 1, 300])
+    raises(ValueError, guidedproj.least_squares, Columns, [3.0, 4.0], says="compressed columns")
     raises(Error, guidedproj.least_squares, A, b, lower=2, upper=1, code=Code.ERROR_ARGUMENT)
 
 

@@ -19,6 +19,7 @@ Callbacks     may raise: the solve is cancelled, and the exception comes out of 
 Lifetimes     Arrays like form.V are views of the library's memory, which lives as long as they do. close() (or `with`)
     gives an object up: it then raises Error, and the memory goes with the last view. Nothing has to be closed.
 Threads       One object by one thread at a time, as in the header; a form with its mesh, system and drag is one object.
+Tried         with CPython 3.11 and numpy 1.24 on Linux.
 """
 import ctypes
 import functools
@@ -27,6 +28,7 @@ import itertools
 import math
 import operator
 import os
+import platform
 import shlex
 import shutil
 import subprocess
@@ -101,10 +103,10 @@ def _struct(name, fields):
     return struct
 
 
-_Allocator = _struct("gproj_allocator", "pointer allocate, reallocate, release, user; size limit")
+_struct("gproj_allocator", "pointer allocate, reallocate, release, user; size limit")
 _struct("gproj_parallel", "pointer run, user")
 _struct("gproj_clock", "pointer now, user")
-_Host = _struct("gproj_host", "allocator allocator; parallel parallel; clock clock")
+_struct("gproj_host", "allocator allocator; parallel parallel; clock clock")
 _struct("gproj_memory", "size used, peak; uint64 allocations")
 _Error = _struct("gproj_error", "code code; place place; int64 index; char[512] message")
 _LeastSquares = _struct("gproj_least_squares", "int32 rows, columns; pointer start, row, value, b, lower, upper; "
@@ -364,9 +366,9 @@ def _guarded(function, otherwise, always=False):
     """A callback that never raises: after an exception it returns `otherwise`, as do those that would follow."""
 
     def call(*arguments):
-        if getattr(_waiting, "exception", None) is not None and not always:
-            return otherwise
         try:
+            if getattr(_waiting, "exception", None) is not None and not always:
+                return otherwise
             return function(*arguments)
         except BaseException as exception:  # KeyboardInterrupt as well
             _waiting.exception = getattr(_waiting, "exception", None) or exception
@@ -412,7 +414,8 @@ def build(path=None):
                "-D_POSIX_C_SOURCE=200809L", "-DGPROJ_API=" + export]  # POSIX, for a clock of real time
     if not path:
         with open(header, "rb") as file:
-            digest = hashlib.sha256(file.read() + "\0".join([*command, sys.platform]).encode()).hexdigest()
+            system = f"{sys.platform} {platform.machine()} {8 * ctypes.sizeof(c_void_p)}"
+            digest = hashlib.sha256(file.read() + "\0".join([*command, system]).encode()).hexdigest()
         folder = os.environ.get("GUIDEDPROJ_CACHE") or os.path.join(
             os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache"), "guidedproj")
         path = os.path.join(folder, f"guidedproj-{digest[:16]}.so")
@@ -448,8 +451,8 @@ def _lib():
     for name, (result, takes) in FUNCTIONS.items():
         function = getattr(library, name)
         function.restype, function.argtypes = _TYPES[result], [arguments[take] for take in takes]
-        if result != "pointer":
-            function.errcheck = _after
+        if result != "pointer" and not name.endswith(("_destroy", "_cancel")):
+            function.errcheck = _after  # not where the collector may call it, in the middle of another call
     return library
 
 
@@ -512,6 +515,13 @@ def _beside(values, elements, what):
     return np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float64), (elements,)))
 
 
+def _path(path):
+    path = os.fsencode(path)
+    if b"\0" in path:
+        raise ValueError("a path has no NUL")
+    return ctypes.c_char_p(path)
+
+
 def _terms(terms):
     array = [(i, j, a) for i, j, a in terms]
     _integers([k for i, j, _ in array for k in (i, j)], "terms")
@@ -569,6 +579,13 @@ class _Object:
         return self._handle
 
     @classmethod
+    def _of(cls, handle):
+        """An object of this class with this handle, which others may have as well."""
+        made = cls.__new__(cls)
+        made._handle = handle
+        return made
+
+    @classmethod
     def _own(cls, pointer, error=None, needs=(), keep=()):
         """The handle for a pointer that the library has just returned."""
         handle = _Handle(pointer, getattr(_lib(), cls._destroy), needs, keep) if pointer else None
@@ -582,9 +599,11 @@ class _Object:
         """Calls a function that ends with `host, error` and returns a new object."""
         error, host = _Error(), host or _default_host()
         pointer = getattr(_lib(), function)(*arguments, byref(host._c), byref(error))
-        made = into if into is not None else cls.__new__(cls)
-        made._handle = cls._own(pointer, error, keep=[host])
-        return made
+        handle = cls._own(pointer, error, keep=[host])
+        if into is None:
+            return cls._of(handle)
+        into._handle = handle
+        return into
 
     def _get(self, function, *arguments):
         """Calls a function that ends with `error` and returns a code."""
@@ -662,7 +681,7 @@ class Mesh(_Object):
     @classmethod
     def load(cls, path, host=None):
         """Reads an OBJ or OFF file (gproj_mesh_load)."""
-        return cls._make("gproj_mesh_load", ctypes.c_char_p(os.fsencode(path)), host=host)
+        return cls._make("gproj_mesh_load", _path(path), host=host)
 
     @classmethod
     def read(cls, text, format=Format.DETECT, host=None):
@@ -672,7 +691,7 @@ class Mesh(_Object):
 
     def save(self, path):
         """Writes an OBJ or OFF file, whole or not at all (gproj_mesh_save)."""
-        self._get("gproj_mesh_save", ctypes.c_char_p(os.fsencode(path)))
+        self._get("gproj_mesh_save", _path(path))
 
     def write(self, format=Format.OBJ):
         """The text of an OBJ or OFF file (gproj_mesh_write)."""
@@ -680,6 +699,10 @@ class Mesh(_Object):
         write = _WRITE(_guarded(lambda user, text, size: pieces.append(ctypes.string_at(text, size)) is None, False))
         self._get("gproj_mesh_write", format, ctypes.cast(write, c_void_p), None)
         return b"".join(pieces).decode()
+
+    def __repr__(self):
+        return "<Mesh, closed>" if self._handle is None else \
+            f"<Mesh of {self.vertex_count} vertices, {self.edge_count} edges, {self.face_count} faces>"
 
     def copy(self, host=None):
         return Mesh._make("gproj_mesh_copy", self._c, host=host)
@@ -819,9 +842,7 @@ class Mesh(_Object):
                                     corner_count=len(corners), corners=_address(corners), round_corners=round_corners)
         pointer = c_void_p()
         mesh = Mesh._make("gproj_mesh_subdivide", self._c, byref(options), byref(pointer), host=host)
-        stencil = Stencil.__new__(Stencil)
-        stencil._handle = Stencil._own(pointer.value, keep=[host])
-        return mesh, stencil
+        return mesh, Stencil._of(Stencil._own(pointer.value, keep=[host]))
 
     def vertex_offset(self, distance, host=None):
         """The parallel mesh with its vertices at a distance: circular meshes (gproj_mesh_vertex_offset)."""
@@ -1062,8 +1083,8 @@ class System(_Object):
     @classmethod
     def _borrow(cls, pointer, root):
         """The system of a form, whose handle is `root`, or of a callback."""
-        system = cls.__new__(cls)
-        system._handle, system._root = _Handle(pointer, None, [root]), root
+        system = cls._of(_Handle(pointer, None, [root]))
+        system._root = root
         return system
 
     def _check(self, number):
@@ -1162,7 +1183,7 @@ def least_squares(A, b, lower=None, upper=None, damping=0.0, start=None, host=No
     if all(hasattr(A, name) for name in ("indptr", "indices", "data")):
         rows, columns = A.shape
         begin, row, value = _integers(A.indptr, "A", np.int64), _integers(A.indices, "A"), A.data
-        if len(begin) != columns + 1:
+        if len(begin) != columns + 1 or not begin[-1] == len(row) == len(value):
             raise ValueError("A: compressed columns are wanted (scipy's csc_matrix)")
     else:
         A = _doubles(A, (None, None), "A")
@@ -1194,7 +1215,7 @@ class Form(_Object):
     def __init__(self, V, F=None, host=None):
         mesh, host = V if isinstance(V, Mesh) else Mesh(V, F, host), host or _default_host()
         self._handle = Form._own(_lib().gproj_form_create(mesh._c, byref(host._c)), needs=[mesh._c], keep=[host])
-        self._mesh, self._targets = mesh, {}
+        self._mesh, self._targets = Mesh._of(mesh._c), {}  # the caller may close `mesh`
         self._check(None)
 
     def _check(self, number):
@@ -1403,13 +1424,19 @@ class Form(_Object):
         return self._add("rows", ctypes.c_char_p(name.encode()), kind, place, weight)
 
     def add_unknowns(self, group, values, unit=Unit.NUMBER, start=None):
-        """Adds unknowns to a group of add_rows; returns the first one's number. start(mesh_positions, values) may write
-        better start values when a solve or drag begins (gproj_start)."""
-        values, mesh, callback = np.ascontiguousarray(values, np.float64).ravel(), weakref.ref(self._mesh), None
+        """Adds unknowns to a group of add_rows; returns the first one's number. start(V, values) may write better start
+        values when a solve or a drag begins with the positions V (gproj_start)."""
+        values, mesh, callback = np.ascontiguousarray(values, np.float64).ravel(), Mesh._of(self._mesh._c), None
+
+        def begin(user, _, first, count, there):
+            there = np.ctypeslib.as_array(there, (count,))
+            given = there.copy()  # the memory is the library's, for the time of the call
+            start(mesh.V, given)
+            there[:] = given
+
         if start:
-            callback = _START(_guarded(lambda user, _, first, count, values: start(
-                mesh().V, np.ctypeslib.as_array(values, (count,))), None))
-            self._c.keep += [callback, self._mesh]
+            callback = _START(_guarded(begin, None))
+            self._c.keep.append(callback)
         return self._check(_lib().gproj_form_add_unknowns(
             self._c, group, unit, len(values), values.ctypes, ctypes.cast(callback, c_void_p) if start else None, None))
 
@@ -1627,8 +1654,8 @@ class Drag(_Object):
         if start is not None:
             start = _integers(start, "start", np.int64)
             count = len(start) - 1
-            if count < 0 or start[-1] > len(vertices):
-                raise ValueError("start: one entry more than handles is wanted, the last at most the number of vertices")
+            if count < 0 or start.max() > len(vertices):
+                raise ValueError("start: one entry more than handles is wanted, none beyond the number of vertices")
         weights = _beside(weights, len(vertices), "weights")
         position = None if position is None else _doubles(position, (count, 3), "position")
         handles = _Handles(count=count, start=_address(start), vertex=_address(vertices), weight=_address(weights),
@@ -1673,6 +1700,7 @@ class Drag(_Object):
         handle, self._handle = self._c, None
         handle.destroy = None
         _lib().gproj_drag_cancel(handle)
+        _raise_waiting()
 
     def __exit__(self, kind, *exception):
         if self._handle is not None:
