@@ -9,6 +9,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import time
 import traceback
 import weakref
 
@@ -321,6 +322,11 @@ def test_no_leaks():
         gc.collect()
         if counting.blocks or counting.wrong:
             check(False, f"allocation {fail_at} fails: {counting.blocks} blocks are left")
+    made = [Mesh(*dome(), Counting().host), Form(*dome(), host=Counting().host), guidedproj.System(Counting().host)]
+    gc.collect()  # hosts stay as long as what was made with them
+    noise = [guidedproj.Host(now=time.monotonic) for _ in range(50)]
+    check(made[1].add_planarity() == 0 and made[1].solve().iterations > 0 and made[2].add_variables([1.0]) == 0, noise)
+    del made
     limited = guidedproj.Host(limit=20000)
     raises(Error, Mesh, *dome(40), limited, code=Code.ERROR_MEMORY)
     form = Form(*dome(20))
