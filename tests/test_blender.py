@@ -52,6 +52,9 @@ import guidedproj
 roof = guidedproj.Mesh.load(os.path.join(root, "examples", "roof.obj"))
 corners = [v for v in range(roof.vertex_count) if roof.valence(v) == 2]
 
+import guidedproj_blender
+check(guidedproj_blender.bl_info["version"] == tuple(int(part) for part in guidedproj.VERSION.split(".")), "the version")
+
 # ---- planar panels, and undo ----
 
 thing = new_object(roof.V, roof.F)

@@ -9,6 +9,7 @@ import pickle
 import signal
 import subprocess
 import sys
+import threading
 import time
 import traceback
 import weakref
@@ -479,6 +480,55 @@ def test_refresh_and_systems():
     raises(Error, circles.add_row, group, [(0, 7, 1.0)], code=Code.ERROR_INDEX)
 
 
+def test_refresh_in_a_form():
+    """Rows of the form's system, anew in each iteration: a vertex on the curve z = sin x / 2."""
+    form = Form(*dome())
+    form.add_planarity()
+    form.add_closeness(0.01)
+    seen, (centre, scale) = [], form.units
+
+    def refresh(system, group, progress):
+        x = system.values[120] / scale + centre[0]
+        seen.append(system)
+        system.set_row(group, 0, [1.0, -math.cos(x) / 2], (centre[2] - math.sin(x) / 2 + math.cos(x) / 2 *
+                                                        (x - centre[0])) * scale)
+    group = form.system.add_group("wave", refresh=refresh, place=Place.VERTEX)
+    form.system.add_row(group, [(122, -1, 1.0), (120, -1, 1.0)], 0.0, 40)
+    gc.collect()
+    result = form.solve(30)
+    x, _, z = form.V[40]
+    check(result.outcome == Outcome.CONVERGED and abs(z - math.sin(x) / 2) < 1e-9, result.message, x, z)
+    form.close()
+    check(seen[0].group_count >= 3, "a system from a callback keeps its form")
+
+
+def test_threads():
+    """Forms in threads of their own: each exception comes out where it belongs."""
+    came = {}
+
+    def life(name):
+        def broken(iteration):
+            if iteration.number == 2 + name % 2:
+                raise LookupError(name)
+        try:
+            flat_form().solve(20, broken)
+        except LookupError as exception:
+            came[name] = exception.args[0]
+    threads = [threading.Thread(target=life, args=(name,)) for name in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    check(came == {name: name for name in range(6)}, came)
+
+
+def test_documented():
+    for kind in (Mesh, guidedproj.Edit, guidedproj.Stencil, guidedproj.Curve, guidedproj.Surface, guidedproj.System, Form,
+                 guidedproj.Drag):
+        for name, what in vars(kind).items():
+            check(name.startswith("_") or what.__doc__, kind, name, "has no documentation")
+
+
 # ---- forms ----
 
 
@@ -511,6 +561,8 @@ def test_all_builders():
         number = getattr(form, "add_" + name)(*arguments)
         info = form.group_info(number)
         check(number >= 0 and form.system.group_count > before and info.name, name, number, info.name)
+        known = {"fixed": "fixed vertices", "gauss_fairness": "Gauss image fairness", "rows": "own"}
+        check(info.name == known.get(name, name.replace("_", " ")), name, "adds", info.name)
         check(number == 0 or info.rows > 0 or name == "rows", name, "has", info.rows, "rows")
     form = Form(V, F)
     check([form.group_info(form.add_fixed(list_of)).rows for list_of in (None, [], [5, 6])] == [243, 0, 6],

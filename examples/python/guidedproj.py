@@ -378,7 +378,7 @@ def _guarded(function, otherwise, always=False):
 
 
 def _after(result, function, arguments):
-    """Of all functions that return no pointer, when they have returned."""
+    """Raises what callbacks have raised, when a function that returns no pointer has returned."""
     _raise_waiting()
     return result
 
@@ -705,10 +705,12 @@ class Mesh(_Object):
             f"<Mesh of {self.vertex_count} vertices, {self.edge_count} edges, {self.face_count} faces>"
 
     def copy(self, host=None):
+        """A mesh like this one."""
         return Mesh._make("gproj_mesh_copy", self._c, host=host)
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_mesh_memory(self._c))
 
     # -- arrays --
@@ -745,6 +747,7 @@ class Mesh(_Object):
 
     @property
     def polylines(self):
+        """The vertices of each polyline."""
         start = self.polyline_start
         return [self.polyline_vertex[start[k]:start[k + 1]] for k in range(self.polyline_count)]
 
@@ -781,6 +784,7 @@ class Mesh(_Object):
         return _lib().gproj_mesh_valence(self._c, vertex)
 
     def is_boundary_vertex(self, vertex):
+        """Is the vertex at the boundary?"""
         return _lib().gproj_mesh_is_boundary_vertex(self._c, vertex)
 
     def one_ring(self, vertex):
@@ -796,6 +800,7 @@ class Mesh(_Object):
         return area
 
     def mean_edge_length(self):
+        """The mean over all edges; 0 without edges."""
         return _lib().gproj_mesh_mean_edge_length(self._c)
 
     def measure(self, original=None):
@@ -885,6 +890,7 @@ class Edit(_Object):
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_edit_memory(self._c))
 
     def __getattr__(self, name):
@@ -962,22 +968,27 @@ class Stencil(_Object):
 
     @property
     def shape(self):
+        """Fine and coarse vertices: rows and columns."""
         return self._struct.row_count, self._struct.column_count
 
     @property
     def start(self):
+        """Row i has the entries start[i] to start[i + 1] - 1."""
         return self._view(self._struct.start, self._struct.row_count + 1, np.int64)
 
     @property
     def column(self):
+        """The coarse vertex of each entry."""
         return self._view(self._struct.column, int(self.start[-1]), np.int32)
 
     @property
     def weight(self):
+        """The weight of each entry."""
         return self._view(self._struct.weight, int(self.start[-1]), np.float64)
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_stencil_memory(self._c))
 
     def apply(self, coarse):
@@ -1096,6 +1107,7 @@ class System(_Object):
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_system_memory(self._c))
 
     def add_variables(self, values, block=1):
@@ -1131,6 +1143,7 @@ class System(_Object):
 
     @property
     def group_count(self):
+        """The number of groups."""
         return _lib().gproj_system_group_count(self._c)
 
     def group_info(self, group):
@@ -1138,6 +1151,7 @@ class System(_Object):
         return _read(_lib().gproj_system_group_info(self._c, group))
 
     def set_schedule(self, group, schedule):
+        """Sets a group's weights: keep(w), fade(w, last), guide(w), or schedule(w, decay, last)."""
         self._check(_lib().gproj_system_set_schedule(self._c, group, schedule))
 
     def add_row(self, group, terms, constant=0.0, element=-1):
@@ -1245,6 +1259,7 @@ class Form(_Object):
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_form_memory(self._c))
 
     @property
@@ -1515,6 +1530,7 @@ class Form(_Object):
 
     @property
     def solve_is_on(self):
+        """Is there more to do in a solve in frames?"""
         return _lib().gproj_solve_is_on(self._c)
 
     def solve_advance(self, seconds=0.0):
@@ -1678,10 +1694,12 @@ class Drag(_Object):
 
     @property
     def info(self):
+        """The state of the drag: a record of gproj_drag_info."""
         return _read(_lib().gproj_drag_get_info(self._c))
 
     @property
     def memory(self):
+        """The bytes held, and allocations: a record of gproj_memory."""
         return _read(_lib().gproj_drag_memory(self._c))
 
     def release(self):
