@@ -1,6 +1,7 @@
 """test_blender.py - run by test_python.sh in headless Blender: -- ROOT. Installs examples/blender/guidedproj_blender.py as an
 add-on and uses its operator on meshes, with undo and errors. The last line of its own says how many checks have passed."""
 import os
+import shutil
 import sys
 
 import addon_utils
@@ -42,9 +43,10 @@ def measure(thing):
     return guidedproj.Mesh(positions(thing), [list(face.vertices) for face in thing.data.polygons]).measure()
 
 
-bpy.utils.user_resource("SCRIPTS", path="addons", create=True)
+addons = bpy.utils.user_resource("SCRIPTS", path="addons", create=True)
 bpy.ops.preferences.addon_install(filepath=os.path.join(root, "examples", "blender", "guidedproj_blender.py"))
-sys.path.append(os.path.join(root, "examples", "python"))  # what the user puts beside it
+for part in "examples/python/guidedproj.py", "guidedproj.h":  # what the user puts beside it
+    shutil.copy(os.path.join(root, part), addons)
 addon_utils.modules_refresh()
 bpy.ops.preferences.addon_enable(module="guidedproj_blender")
 import guidedproj
@@ -53,6 +55,7 @@ roof = guidedproj.Mesh.load(os.path.join(root, "examples", "roof.obj"))
 corners = [v for v in range(roof.vertex_count) if roof.valence(v) == 2]
 
 import guidedproj_blender
+check(os.path.dirname(guidedproj.__file__) == addons.rstrip("/"), guidedproj.__file__, addons)
 check(guidedproj_blender.bl_info["version"] == tuple(int(part) for part in guidedproj.VERSION.split(".")), "the version")
 
 # ---- planar panels, and undo ----

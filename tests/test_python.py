@@ -380,6 +380,13 @@ def test_errors():
     raises(Error, edit.set_position, 81, [0, 0, 0], code=Code.ERROR_INDEX)
     raises(Error, form.mesh.subdivide, scheme=guidedproj.Scheme.LOOP, code=Code.ERROR_ARGUMENT)
     check(guidedproj.code_string(Code.ERROR_MEMORY) == "out of memory", guidedproj.code_string(Code.ERROR_MEMORY))
+    mesh, form, curve = Mesh(V, F), Form(V, F), guidedproj.Curve(V[:3])
+    stencil = mesh.subdivide()[1]
+    for function, *arguments in ((guidedproj.Edit, form), (guidedproj.Surface, curve), (guidedproj.Curve.from_loop, form),
+                                 (guidedproj.Curve.from_polyline, V), (mesh.support, form), (mesh.measure_offset, V),
+                                 (stencil.multiply, mesh), (form.add_gliding, mesh, [1]), (form.add_reference, mesh, 0.1),
+                                 (form.set_schedule, 0, 1.0), (guidedproj.Drag, mesh, [1], None, None, None, 0, False)):
+        raises((TypeError, ctypes.ArgumentError), function, *arguments)  # others would crash
     contradiction = Form(V, F)
     contradiction.add_fixed([0])
     contradiction.add_targets([0], [[0, 0, 5]])

@@ -579,6 +579,13 @@ class _Object:
         return self._handle
 
     @classmethod
+    def _as(cls, thing):
+        """The handle of an argument, which must be an object of this class."""
+        if not isinstance(thing, cls):
+            raise TypeError(f"a {cls.__name__} is wanted, not {type(thing).__name__}")
+        return thing._c
+
+    @classmethod
     def _of(cls, handle):
         """An object of this class with this handle, which others may have as well."""
         made = cls.__new__(cls)
@@ -826,7 +833,7 @@ class Mesh(_Object):
 
     def measure_offset(self, offset):
         """How parallel an offset is, and at which distances: see gproj_offset_measures."""
-        return _read(_lib().gproj_measure_offset(self._c, offset._c))
+        return _read(_lib().gproj_measure_offset(self._c, Mesh._as(offset)))
 
     # -- other meshes from this one --
 
@@ -859,7 +866,7 @@ class Mesh(_Object):
 
     def support(self, offset, host=None):
         """The quads between this mesh and an offset, with four vertices each (gproj_mesh_support)."""
-        return Mesh._make("gproj_mesh_support", self._c, offset._c, host=host)
+        return Mesh._make("gproj_mesh_support", self._c, Mesh._as(offset), host=host)
 
 
 def fill(points, corners=None, subdivisions=None, edge_length=0, keep_points=False, rings=0, variant=0, host=None):
@@ -880,7 +887,7 @@ class Edit(_Object):
     _destroy = "gproj_edit_destroy"
 
     def __init__(self, mesh, host=None):
-        Edit._make("gproj_edit_create", mesh._c, host=host, into=self)
+        Edit._make("gproj_edit_create", Mesh._as(mesh), host=host, into=self)
 
     def mesh(self, host=None):
         """A mesh of the present state; then vertex_number, edge_number and face_number are the maps to it."""
@@ -1001,7 +1008,7 @@ class Stencil(_Object):
 
     def multiply(self, coarse, host=None):
         """The stencil that leads through both, self * coarse (gproj_stencil_multiply)."""
-        return Stencil._make("gproj_stencil_multiply", self._c, coarse._c, host=host)
+        return Stencil._make("gproj_stencil_multiply", self._c, Stencil._as(coarse), host=host)
 
     def transpose(self, host=None):
         """Row j has the fine vertices that coarse vertex j moves (gproj_stencil_transpose)."""
@@ -1019,12 +1026,12 @@ class Curve(_Object):
     @classmethod
     def from_loop(cls, mesh, loop=0, host=None):
         """A boundary loop of a mesh."""
-        return cls._make("gproj_curve_from_loop", mesh._c, loop, host=host)
+        return cls._make("gproj_curve_from_loop", Mesh._as(mesh), loop, host=host)
 
     @classmethod
     def from_polyline(cls, mesh, polyline=0, host=None):
         """A polyline of a mesh."""
-        return cls._make("gproj_curve_from_polyline", mesh._c, polyline, host=host)
+        return cls._make("gproj_curve_from_polyline", Mesh._as(mesh), polyline, host=host)
 
     def closest(self, point):
         """The closest point: a record of gproj_curve_hit."""
@@ -1036,7 +1043,7 @@ class Surface(_Object):
     _destroy = "gproj_surface_destroy"
 
     def __init__(self, mesh, host=None):
-        Surface._make("gproj_surface_create", mesh._c, host=host, into=self)
+        Surface._make("gproj_surface_create", Mesh._as(mesh), host=host, into=self)
 
     def closest(self, point):
         """The closest point: a record of gproj_surface_hit."""
@@ -1309,7 +1316,7 @@ class Form(_Object):
 
     def add_gliding(self, curve, vertices, weight=1.0):
         """Vertices stay on a Curve (gproj_add_gliding)."""
-        number = self._add("gliding", curve._c, *_list(vertices, "vertices"), weight)
+        number = self._add("gliding", Curve._as(curve), *_list(vertices, "vertices"), weight)
         self._c.need(curve._c)
         return number
 
@@ -1404,7 +1411,7 @@ class Form(_Object):
 
     def add_reference(self, surface, weight):
         """Closeness to a Surface: v_i on the tangent plane at the closest point (gproj_add_reference)."""
-        number = self._add("reference", surface._c, weight)
+        number = self._add("reference", Surface._as(surface), weight)
         self._c.need(surface._c)
         return number
 
@@ -1677,7 +1684,7 @@ class Drag(_Object):
         handles = _Handles(count=count, start=_address(start), vertex=_address(vertices), weight=_address(weights),
                            position=_address(position))
         options, error = _DragOptions(residual_bound=residual_bound, keep_wishes=keep_wishes), _Error()
-        pointer = _lib().gproj_drag_begin(form._c, byref(handles), byref(options), byref(error))
+        pointer = _lib().gproj_drag_begin(Form._as(form), byref(handles), byref(options), byref(error))
         self._handle = Drag._own(pointer, error, needs=[form._c])
         self._form, self.count, self.result = form, count, None
 
