@@ -431,6 +431,19 @@ def test_callbacks():
     except KeyboardInterrupt:
         check(form.solve(20).outcome == Outcome.CONVERGED, "solves on after Control-C")
 
+    # Control-C while no line of Python runs: a clock in C raises the signal.
+    for callback in None, lambda iteration: True:
+        tick, clock = ctypes.CDLL(os.path.join(work, "tick.so")), guidedproj.Host()
+        clock._c.clock.now = ctypes.cast(tick.now, ctypes.c_void_p)
+        form, count = flat_form(host=clock), ctypes.c_int.in_dll(tick, "ticks")
+        count.value = 0
+        raises(KeyboardInterrupt, form.solve, 20, callback)
+        check(signal.getsignal(signal.SIGINT) is signal.default_int_handler and count.value < 60, count.value)
+        form.solve_begin(20, callback)
+        count.value = 0
+        raises(KeyboardInterrupt, form.solve_advance, math.inf)
+        check(form.solve(20).outcome == Outcome.CONVERGED, "solves on after Control-C in C")
+
     # start values, a clock, an allocator, refreshes
     calls, form = [], flat_form()
     raises(LookupError, form.add_unknowns, form.add_rows("own"), [1.0], start=broken)

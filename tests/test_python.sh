@@ -104,6 +104,16 @@ END_OF_C
 ${CC:-cc} -w -I"$root" "$work/agree.c" "$library" -Wl,-rpath,"$(dirname "$library")" -o "$work/agree" -lm && pass ||
     fail 'a C program cannot be linked with the library'
 
+cat >"$work/tick.c" <<'END_OF_C'
+#include <signal.h>
+int ticks;
+double now(void *user) {
+    if (++ticks == 12) raise(SIGINT);
+    return user ? 0 : ticks;
+}
+END_OF_C
+${CC:-cc} -shared -fPIC "$work/tick.c" -o "$work/tick.so" || fail 'a shared library cannot be compiled'
+
 # ---- the tests in Python ----
 
 sums() { # sums WHAT: adds up what a program has said in tests.txt, "PASSED FAILED" alone on a line near the end

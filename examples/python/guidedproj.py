@@ -15,12 +15,14 @@ Names         are those of the header without gproj_: gproj_add_planarity(form, 
 Lists         of vertices, edges or faces: None means all, an empty list none.
 Errors        are raised as guidedproj.Error with the library's sentence, code, place and index. A form keeps its first
     error: make a new one. "Not converged" is a result, no error.
-Callbacks     may raise: the solve is cancelled, and the exception comes out of the call. So does Control-C.
+Callbacks     may raise: the solve is cancelled, and the exception comes out of the call. So does Control-C, after the
+    iteration.
 Lifetimes     Arrays like form.V are views of the library's memory, which lives as long as they do. close() (or `with`)
     gives an object up: it then raises Error, and the memory goes with the last view. Nothing has to be closed.
 Threads       One object by one thread at a time, as in the header; a form with its mesh, system and drag is one object.
 Tried         with CPython 3.11 and numpy 1.24 on Linux.
 """
+import contextlib
 import ctypes
 import functools
 import hashlib
@@ -31,6 +33,7 @@ import os
 import platform
 import shlex
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -369,12 +372,41 @@ def _guarded(function, otherwise, always=False):
         try:
             if getattr(_waiting, "exception", None) is not None and not always:
                 return otherwise
-            return function(*arguments)
+            _waiting.inside = True
+            try:
+                return function(*arguments)
+            finally:
+                _waiting.inside = False
         except BaseException as exception:  # KeyboardInterrupt as well
             _waiting.exception = getattr(_waiting, "exception", None) or exception
             return otherwise
 
     return call
+
+
+@contextlib.contextmanager
+def _interruptible():
+    """For calls that take long: Control-C ends them at the next callback. Python would raise KeyboardInterrupt at the first
+    line of a callback, before its `try`, where ctypes drops it; so it waits as well, unless the caller's code is under
+    way."""
+    outer, _waiting.inside = getattr(_waiting, "inside", False), False
+    ours = threading.current_thread() is threading.main_thread() and \
+        signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+    def interrupt(number, frame):
+        if _waiting.inside:
+            raise KeyboardInterrupt
+        _waiting.exception = KeyboardInterrupt()
+
+    if ours:
+        signal.signal(signal.SIGINT, interrupt)
+    try:
+        yield
+    finally:
+        if ours:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+        _waiting.inside = outer
+    _raise_waiting()  # an interrupt after the last callback
 
 
 def _after(result, function, arguments):
@@ -1074,8 +1106,7 @@ def schedule(weight, decay=1.0, last=2**31 - 1):
 
 
 def _solve_options(callback, options):
-    """The options, and the callback that they hold. Python sees Control-C only between lines of Python: so there is
-    always one."""
+    """The options, and the callback that they hold: always one, because Python notices Control-C there."""
 
     def call(user, system, iteration):
         answer = callback(_read(iteration.contents)) if callback else None
@@ -1191,7 +1222,8 @@ class System(_Object):
     def solve(self, iterations=20, callback=None, **options):
         """Takes at most `iterations` steps (gproj_system_solve); options and callback as in form.solve."""
         options, callback = _solve_options(callback, options)
-        result = _read(_lib().gproj_system_solve(self._c, iterations, byref(options)))
+        with _interruptible():
+            result = _read(_lib().gproj_system_solve(self._c, iterations, byref(options)))
         if result.outcome == Outcome.FAILED:
             self._check(None)
             raise Error(result.message, Code.ERROR_STATE)
@@ -1523,7 +1555,9 @@ class Form(_Object):
         if iterations is None:
             iterations = 30 if options.get("nearest") else 200 if options.get("smooth") else 20
         options, callback = _solve_options(callback, options)
-        return self._verdict(_lib().gproj_solve(self._c, iterations, byref(options)))
+        with _interruptible():
+            result = _lib().gproj_solve(self._c, iterations, byref(options))
+        return self._verdict(result)
 
     def solve_begin(self, iterations=20, callback=None, **options):
         """Begins a solve in frames (gproj_solve_begin): while form.solve_is_on: form.solve_advance(0.01)."""
@@ -1542,7 +1576,9 @@ class Form(_Object):
 
     def solve_advance(self, seconds=0.0):
         """Takes the iterations that fit into `seconds`; 0: one, inf: all (gproj_solve_advance)."""
-        return self._verdict(_lib().gproj_solve_advance(self._c, seconds))
+        with _interruptible():
+            result = _lib().gproj_solve_advance(self._c, seconds)
+        return self._verdict(result)
 
     def solve_stop(self):
         """Ends a solve in frames at the present positions."""
