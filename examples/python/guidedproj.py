@@ -1109,7 +1109,7 @@ def _solve_options(callback, options):
     """The options, and the callback that they hold: always one, because Python notices Control-C there."""
 
     def call(user, system, iteration):
-        answer = callback(_read(iteration.contents)) if callback else None
+        answer = None if callback is None else callback(_read(iteration.contents))
         return answer is None or bool(answer)
 
     on_iteration = _ON_ITERATION(_guarded(call, False))
