@@ -114,7 +114,7 @@ if [ -f "$root/README.md" ]; then
     grep -qx 'make -C tests' "$work/make.list" && pass || fail 'README.md does not name make -C tests'
     while read -r command; do
         # -n: what would be done, without doing it; exit code 2 for a target or folder that does not exist
-        answer=$(cd "$root" && MAKEFLAGS='' eval "make -n ${command#make }" 2>&1 >/dev/null) && answer=''
+        answer=$(cd "$root" && MAKEFLAGS='' eval "make -n ${command#make }" 2>&1 >/dev/null </dev/null) && answer=''
         clean "README.md: $command" "$answer"
     done <"$work/make.list"
     # A make that only says what it would do; the tool is the one that was built for the tests.
