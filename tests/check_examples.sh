@@ -1,6 +1,6 @@
 #!/bin/bash
-# check_examples.sh - every example builds, also alone by the command at its top, runs, prints what tests/expected/NAME.txt
-# says, is short, and is shown in examples/README.md.
+# check_examples.sh - every example in C builds, also alone by the command at its top, runs, prints what tests/expected/NAME.txt
+# says, is short, and is shown in examples/README.md, as are those in Python (test_python.sh runs these).
 . "$(dirname "$0")/checks.sh"
 
 ls "$root"/examples/*.c >/dev/null 2>&1 || { fail 'no examples'; report; }
@@ -42,7 +42,7 @@ for expected in "$root"/tests/expected/*.txt; do
 done
 # examples/README.md shows every example and picture, and nothing that is not there.
 cd "$root/examples" || exit 2
-for file in *.c pictures/*.svg; do
+for file in *.c python/*.py blender/*.py pictures/*.svg; do
     grep -qF "]($file)" README.md && pass || fail "examples/README.md does not show $file"
 done
 for link in $(grep -oE '\]\([^):]+\)' README.md | sed 's/^](//; s/)$//'); do

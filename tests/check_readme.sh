@@ -1,6 +1,6 @@
 #!/bin/bash
 # check_readme.sh - what the documents show works: the C programs in the header's manual and in README.md compile
-# without a warning and run; the README's make commands exist, its shell blocks and the examples of --help run as they are
+# without a warning and run, as do README.md's programs in Python; the README's make commands exist, its shell blocks and the examples of --help run as they are
 # printed, in sh and (where it is installed) in zsh, and the files it names are there.
 #
 # A program in the manual begins at a line "#define GUIDEDPROJ_IMPLEMENTATION" and ends at the "}" in the same column. In
@@ -40,6 +40,10 @@ for number, (where, code) in enumerate(programs):
     open(f"{out}/{where}_{number}.c", "w").write(code + "\n")
     for name in re.findall(r'gproj_mesh_load\("([^"]+\.obj)"', code):
         write_mesh(f"{out}/{name}")
+
+for number, code in enumerate(code for language, code in fences if language == "python"):
+    open(f"{out}/python_{number}.py", "w").write(code)
+    for name in re.findall(r'load\("([^"]+\.obj)"', code): write_mesh(f"{out}/{name}")
 
 shell = "\n".join(code for language, code in fences if language in ("", "sh", "bash", "console", "shell"))
 commands = re.findall(r"^\s*(?:\$ )?(?:.*(?:&&|;)\s*)?(make\b[^#;&|\n]*)", shell, re.M)
@@ -91,12 +95,26 @@ for program in "$work"/manual_*.c "$work"/readme_*.c; do
     fi
 done
 
+python=$(python_with_numpy)
+[ -f "$work/python_0.py" ] && pass || fail 'no program in Python found in README.md'
+for program in "$work"/python_*.py; do
+    [ -n "$python" ] || { skip 'README.md: Python: no python3 with numpy (Debian: python3-numpy)'; break; }
+    # One cache for all tests.
+    if (cd "$work" && GUIDEDPROJ_CACHE=$OLDPWD/build/python PYTHONPATH=$root/examples/python timeout 120 \
+        $python -B "$program" >"$work/python.txt" 2>&1 </dev/null); then
+        pass
+    else
+        fail "README.md: $(basename "$program") ends with an error"
+        tail -n 20 "$work/python.txt"
+    fi
+done
+
 if [ -f "$root/README.md" ]; then
     [ -s "$work/make.list" ] && pass || fail 'README.md has no make command'
     grep -qx 'make -C tests' "$work/make.list" && pass || fail 'README.md does not name make -C tests'
     while read -r command; do
         # -n: what would be done, without doing it; exit code 2 for a target or folder that does not exist
-        answer=$(cd "$root" && MAKEFLAGS='' eval "make -n ${command#make }" 2>&1 >/dev/null) && answer=''
+        answer=$(cd "$root" && MAKEFLAGS='' eval "make -n ${command#make }" 2>&1 >/dev/null </dev/null) && answer=''
         clean "README.md: $command" "$answer"
     done <"$work/make.list"
     # A make that only says what it would do; the tool is the one that was built for the tests.

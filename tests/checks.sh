@@ -61,6 +61,13 @@ printf '#include "guidedproj.h"\n' >"$work/header.c"
 printf '#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n' >"$work/whole.c"
 cp "$work/header.c" "$work/header.cpp"
 cp "$work/whole.c" "$work/whole.cpp"
+# A Python with numpy, which may be another one than the first on the path; empty: none.
+python_with_numpy() {
+    local one
+    for one in python3 /usr/bin/python3; do
+        $one -c 'import numpy' >/dev/null 2>&1 && echo "$one" && return
+    done
+}
 have_cblas() { echo '#include <cblas.h>' | gcc -E -x c - >/dev/null 2>&1; }
 
 report() {
