@@ -15,56 +15,59 @@ uniform vec3 eye;
 uniform vec2 screen; // in pixels
 ivec2 texel(uint k) { return ivec2(int(k) & ${ROW - 1}, int(k) / ${ROW}); }
 vec3 place(uint v) { return texelFetch(places, texel(v), 0).xyz; }
+uniform vec3 flatColour, middleColour, warnColour;
+vec3 ramp(float t) { // lightness goes one way, so that no one needs to tell hues apart
+    return t < 0.5 ? mix(flatColour, middleColour, 2.0 * t) : mix(middleColour, warnColour, min(1.0, 2.0 * t - 1.0));
+}
 vec4 towards(vec3 p, float way) { return camera * vec4(p + normalize(eye - p) * way, 1); } // what is drawn upon faces
 `;
 
 const shaders = {
     face: [`${shaderHead}
 layout(location = 0) in uvec2 corner; // vertex, face
+uniform float marked; // a face's number, < 0: none
 out vec3 at;
-flat out float value;
+flat out float value, mark;
 void main() {
     at = place(corner.x);
     value = texelFetch(values, texel(corner.y), 0).x;
+    mark = float(corner.y) == marked ? 1.0 : 0.0;
     gl_Position = camera * vec4(at, 1);
 }`, `${shaderHead}
-uniform vec3 flatColour, middleColour, warnColour;
-uniform float coloured;
+uniform vec3 handleColour;
 in vec3 at;
-flat in float value;
+flat in float value, mark;
 out vec4 colour;
 void main() {
     vec3 n = normalize(cross(dFdx(at), dFdy(at))), look = normalize(eye - at);
     if (dot(n, look) < 0.0) n = -n;
     vec3 light = normalize(look + vec3(0, 0, 0.9));
     float shade = 0.78 + 0.24 * dot(n, light);
-    // from 1e-4 to 1e-2 mean edge lengths, by the logarithm
-    float t = coloured * clamp((log(max(value, 1e-9)) / log(10.0) + 4.0) / 2.0, 0.0, 1.0);
-    vec3 tone = t < 0.5 ? mix(flatColour, middleColour, 2.0 * t) : mix(middleColour, warnColour, 2.0 * t - 1.0);
-    colour = vec4(tone * min(shade, 1.04), 1);
+    colour = vec4(mix(ramp(value), handleColour, 0.55 * mark) * min(shade, 1.04), 1);
 }`],
     edge: [`${shaderHead}
 layout(location = 0) in uvec2 ends;
-uniform float width, byForce;
-flat out float force;
+uniform float width, byForce, byLength;
+flat out float told;
 void main() {
-    float known = byForce * texelFetch(forces, texel(uint(gl_InstanceID)), 0).x, way = 0.004 * (1.0 + abs(known));
+    told = (byForce + byLength) * texelFetch(forces, texel(uint(gl_InstanceID)), 0).x;
+    float way = 0.004 * (1.0 + abs(told)), wide = width * (1.0 + byForce * 7.0 * sqrt(abs(told)) + byLength * 3.0 * told * told);
     vec4 a = towards(place(ends.x), way), b = towards(place(ends.y), way);
     vec2 along = (b.xy / b.w - a.xy / a.w) * screen;
     along = length(along) > 1e-6 ? normalize(along) : vec2(1, 0);
-    force = known;
-    float wide = width * (1.0 + 7.0 * sqrt(abs(force)));
     vec4 p = (gl_VertexID & 1) == 0 ? a : b;
     p.xy += vec2(-along.y, along.x) * (gl_VertexID < 2 ? wide : -wide) / screen * p.w;
     gl_Position = p;
 }`, `${shaderHead}
 uniform vec3 lineColour, pushColour, pullColour;
-uniform float opacity;
-flat in float force;
+uniform float opacity, byLength;
+flat in float told;
 out vec4 colour;
 void main() {
-    float t = smoothstep(0.0, 0.05, abs(force));
-    colour = vec4(mix(lineColour, force > 0.0 ? pushColour : pullColour, t), mix(opacity, 0.95, t));
+    float t = smoothstep(0.0, 0.05, abs(told));
+    colour = vec4(mix(lineColour, told > 0.0 ? pushColour : pullColour, t), mix(opacity, 0.95, t));
+    // from half of the full length on: all edges of a mesh are about alike
+    if (byLength > 0.0) colour = vec4(mix(lineColour, ramp(2.0 * told - 1.0), smoothstep(0.5, 0.6, told)), 0.95);
 }`],
     disc: [`${shaderHead}
 layout(location = 0) in uvec2 which; // vertex, kind
@@ -76,22 +79,23 @@ void main() {
     vec4 p = towards(place(which.x), 0.02);
     kind = which.y;
     at = corner;
-    p.xy += corner * size * (kind == 1u ? 0.8 : 1.25) / screen * p.w * 2.0;
+    p.xy += corner * size * (kind == 1u ? 0.8 : kind == 2u ? 1.25 : kind == 3u ? 2.2 : 0.95) / screen * p.w * 2.0;
     gl_Position = p;
 }`, `${shaderHead}
-uniform vec3 fixedColour, handleColour;
+uniform vec3 fixedColour, handleColour, paperColour;
 in vec2 at;
 flat in uint kind;
 out vec4 colour;
 void main() {
     float r = length(at);
     if (r > 1.0) discard;
+    if (kind == 3u && r < 0.66) discard; // a ring around a vertex that the verdict names
     vec3 inside = kind == 1u ? fixedColour : handleColour;
-    colour = vec4(r > 0.72 ? vec3(1) : inside, 1);
+    colour = vec4(r > 0.72 && kind != 3u ? paperColour : inside, 1);
 }`],
 };
 
-/* "#rrggbb" or "rgb(...)" of a custom property, as three numbers in 0..1. */
+/* "#rrggbb" of a custom property, as three numbers in 0..1. */
 function colourOf(name) {
     const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
     return [1, 3, 5].map(k => parseInt(text.slice(k, k + 2), 16) / 255);
@@ -103,7 +107,8 @@ class Drawing {
         this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false});
         if (!this.gl) throw new Error('This browser has no WebGL 2, which the page draws with.');
         this.view = {yaw: -1.05, pitch: 0.5, distance: 4, target: [0, 0, 0]};
-        this.byForce = false;
+        this.telling = 'planarity'; // see `colours` in page.js
+        this.marked = -1;           // a face
         this.counts = {vertices: 0, faces: 0, edges: 0};
         this.points = [];
         this.start();
@@ -146,7 +151,7 @@ class Drawing {
 
     readColours() {
         this.colours = {};
-        for (const name of ['background', 'flat', 'middle', 'warn', 'line', 'push', 'pull', 'fixed', 'handle'])
+        for (const name of ['background', 'flat', 'middle', 'warn', 'line', 'push', 'pull', 'fixed', 'handle', 'paper'])
             this.colours[name] = colourOf('--' + name);
     }
 
@@ -188,10 +193,10 @@ class Drawing {
     }
 
     get places() { return this.textures[0].data; }
-    get planarity() { return this.textures[1].data.subarray(0, this.counts.faces); }
+    get values() { return this.textures[1].data.subarray(0, this.counts.faces); }
     get forces() { return this.textures[2].data.subarray(0, this.counts.edges); }
 
-    /* Pairs [vertex, kind] of discs: kind 1 is fixed, 2 is the handle. */
+    /* Pairs [vertex, kind] of discs: kind 1 is fixed, 2 is the handle, 3 is named by the verdict, 4 is under the pointer. */
     setPoints(points) {
         this.points = points;
         this.fill('disc', new Uint32Array(points.flat()), this.gl.DYNAMIC_DRAW);
@@ -284,23 +289,24 @@ class Drawing {
         gl.clearColor(...c.background, 1);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
         if (!this.mesh) return;
-        const shared = {camera: this.matrix(), screen: [width, height], eye: this.eye()};
+        const shared = {camera: this.matrix(), screen: [width, height], eye: this.eye(),
+            flatColour: c.flat, middleColour: c.middle, warnColour: c.warn};
+        const byForce = Number(this.telling === 'forces'), byLength = Number(this.telling === 'lengths');
         const pixels = this.mesh.edge / this.pixel(this.view.distance); // of a mean edge, on the screen
         gl.enable(gl.DEPTH_TEST);
         gl.disable(gl.BLEND);
         gl.enable(gl.POLYGON_OFFSET_FILL);
         gl.polygonOffset(1, 1);
-        this.use('face', {...shared, flatColour: c.flat, middleColour: c.middle, warnColour: c.warn,
-            coloured: this.byForce ? 0 : 1});
+        this.use('face', {...shared, handleColour: c.handle, marked: this.marked});
         gl.drawArrays(gl.TRIANGLES, 0, this.mesh.corners.length / 2);
         gl.disable(gl.POLYGON_OFFSET_FILL);
         gl.enable(gl.BLEND);
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        this.use('edge', {...shared, width: ratio * Math.min(1.3, 0.4 + pixels / 30), byForce: this.byForce ? 1 : 0,
-            opacity: this.byForce ? 0.3 : Math.min(0.75, pixels / 14), lineColour: c.line, pushColour: c.push, pullColour: c.pull});
+        this.use('edge', {...shared, width: ratio * Math.min(1.3, 0.4 + pixels / 30), byForce, byLength,
+            opacity: byForce ? 0.3 : Math.min(0.75, pixels / 14), lineColour: c.line, pushColour: c.push, pullColour: c.pull});
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.mesh.edges);
         if (!this.points.length) return;
-        this.use('disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle});
+        this.use('disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle, paperColour: c.paper});
         gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.points.length);
     }
 }

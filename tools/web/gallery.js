@@ -285,7 +285,7 @@ const gallery = [
     {
         name: 'Greenhouse', figure: '13', group: 'From the paper', colour: 'forces', corners: 4, example: 'greenhouse.c',
         rules: {equilibrium: 1, compression: 1, gliding: 1, lifting: 1},
-        hint: 'A flat net. Solve lifts it until it stands. Then vertices may move freely, and panels become flat at right angles.',
+        hint: 'A flat net. Solve lifts it until it stands. Then untick “height only”, tick “right angles”, wish for fair lines, and solve.',
         make: () => curve(44, a => {
             const turn = a + 0.12 * sin(2 * a);
             return [14 * cos(turn), 8 * sin(turn) - 1.5 * cos(2 * turn), 0];
