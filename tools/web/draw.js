@@ -1,7 +1,10 @@
 /* draw.js - draws a mesh by WebGL 2: flat-shaded faces coloured by a number each, edges as lines of constant width on the
    screen, forces as their width and colour, vertices as discs.
 
-   Vertices, faces and edges lie in textures of floats; buffers hold only their numbers. So a frame is three uploads. */
+   Lines and discs have soft rims of their own, which is smoother than the samples of antialiasing, and without a GPU takes
+   less than half of the time.
+
+   Vertices, faces and edges lie in textures of floats; a buffer and another texture hold only numbers. So a frame is three uploads. */
 'use strict';
 
 const ROW = 1024; // texels in a row of these textures
@@ -46,28 +49,36 @@ void main() {
     colour = vec4(mix(ramp(value), handleColour, 0.55 * mark) * min(shade, 1.04), 1);
 }`],
     edge: [`${shaderHead}
-layout(location = 0) in uvec2 ends;
+uniform highp usampler2D pairs; // the ends of edges; six vertices each: an instance each is slow where no GPU is
 uniform float width, byForce, byLength;
-flat out float told;
+flat out float told, half_width;
+out float off; // from the middle of the line, in pixels
 void main() {
-    told = (byForce + byLength) * texelFetch(forces, texel(uint(gl_InstanceID)), 0).x;
+    uint edge = uint(gl_VertexID / 6), corner = uint(gl_VertexID % 6);
+    uvec2 ends = texelFetch(pairs, texel(edge), 0).xy;
+    if (corner > 2u) corner -= 2u; // 0 1 2, 1 2 3
+    told = (byForce + byLength) * texelFetch(forces, texel(edge), 0).x;
     float way = 0.004 * (1.0 + abs(told)), wide = width * (1.0 + byForce * 7.0 * sqrt(abs(told)) + byLength * 3.0 * told * told);
     vec4 a = towards(place(ends.x), way), b = towards(place(ends.y), way);
     vec2 along = (b.xy / b.w - a.xy / a.w) * screen;
     along = length(along) > 1e-6 ? normalize(along) : vec2(1, 0);
-    vec4 p = (gl_VertexID & 1) == 0 ? a : b;
-    p.xy += vec2(-along.y, along.x) * (gl_VertexID < 2 ? wide : -wide) / screen * p.w;
+    vec4 p = (corner & 1u) == 0u ? a : b;
+    half_width = max(wide, 1.0) / 2.0;
+    off = (corner < 2u ? 1.0 : -1.0) * (half_width + 1.0);
+    p.xy += vec2(-along.y, along.x) * 2.0 * off / screen * p.w;
     gl_Position = p;
 }`, `${shaderHead}
 uniform vec3 lineColour, pushColour, pullColour;
 uniform float opacity, byLength;
-flat in float told;
+flat in float told, half_width;
+in float off;
 out vec4 colour;
 void main() {
     float t = smoothstep(0.0, 0.05, abs(told));
     colour = vec4(mix(lineColour, told > 0.0 ? pushColour : pullColour, t), mix(opacity, 0.95, t));
     // from half of the full length on: all edges of a mesh are about alike
     if (byLength > 0.0) colour = vec4(mix(lineColour, ramp(2.0 * told - 1.0), smoothstep(0.5, 0.6, told)), 0.95);
+    colour.a *= clamp(half_width + 0.5 - abs(off), 0.0, 1.0);
 }`],
     disc: [`${shaderHead}
 layout(location = 0) in uvec2 which; // vertex, kind
@@ -87,11 +98,11 @@ in vec2 at;
 flat in uint kind;
 out vec4 colour;
 void main() {
-    float r = length(at);
+    float r = length(at), soft = fwidth(r);
     if (r > 1.0) discard;
     if (kind == 3u && r < 0.66) discard; // a ring around a vertex that the verdict names
     vec3 inside = kind == 1u ? fixedColour : handleColour;
-    colour = vec4(r > 0.72 && kind != 3u ? paperColour : inside, 1);
+    colour = vec4(mix(inside, paperColour, kind == 3u ? 0.0 : smoothstep(0.72 - soft, 0.72, r)), 1.0 - smoothstep(1.0 - soft, 1.0, r));
 }`],
 };
 
@@ -104,7 +115,7 @@ function colourOf(name) {
 class Drawing {
     constructor(canvas) {
         this.canvas = canvas;
-        this.gl = canvas.getContext('webgl2', {antialias: true, alpha: false});
+        this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
         if (!this.gl) throw new Error('This browser has no WebGL 2, which the page draws with.');
         this.view = {yaw: -1.05, pitch: 0.5, distance: 4, target: [0, 0, 0]};
         this.telling = 'planarity'; // see `colours` in page.js
@@ -136,7 +147,7 @@ class Drawing {
             this.programs[name] = program;
         }
         this.arrays = {};
-        for (const name of ['face', 'edge', 'disc']) {
+        for (const name of ['face', 'disc']) {
             const array = gl.createVertexArray(), buffer = gl.createBuffer();
             gl.bindVertexArray(array);
             gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
@@ -145,7 +156,9 @@ class Drawing {
             if (name !== 'face') gl.vertexAttribDivisor(0, 1);
             this.arrays[name] = {array, buffer};
         }
+        this.arrays.edge = {array: gl.createVertexArray()};
         this.textures = ['places', 'values', 'forces'].map(name => ({name, texture: gl.createTexture()}));
+        this.pairs = {name: 'pairs', texture: gl.createTexture()};
         this.readColours();
     }
 
@@ -167,14 +180,20 @@ class Drawing {
         this.mesh = mesh;
         this.counts = mesh;
         this.fill('face', mesh.corners, gl.STATIC_DRAW);
-        this.fill('edge', mesh.ends, gl.STATIC_DRAW);
+        const store = (t, ...format) => {
+            gl.bindTexture(gl.TEXTURE_2D, t.texture);
+            gl.texImage2D(gl.TEXTURE_2D, 0, format[0], ROW, t.rows, 0, ...format.slice(1));
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+        };
+        this.pairs.rows = Math.max(1, Math.ceil(mesh.edges / ROW));
+        const ends = new Uint32Array(2 * ROW * this.pairs.rows);
+        ends.set(mesh.ends);
+        store(this.pairs, gl.RG32UI, gl.RG_INTEGER, gl.UNSIGNED_INT, ends);
         this.textures.forEach((t, k) => {
             t.rows = Math.max(1, Math.ceil(counts[k] / ROW));
             t.data = new Float32Array(t.rows * ROW * (k ? 1 : 4));
-            gl.bindTexture(gl.TEXTURE_2D, t.texture);
-            gl.texImage2D(gl.TEXTURE_2D, 0, k ? gl.R32F : gl.RGBA32F, ROW, t.rows, 0, k ? gl.RED : gl.RGBA, gl.FLOAT, null);
-            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
-            gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
+            store(t, k ? gl.R32F : gl.RGBA32F, k ? gl.RED : gl.RGBA, gl.FLOAT, null);
         });
         this.setPoints([]);
     }
@@ -273,7 +292,7 @@ class Drawing {
             else if (value.length === 2) gl.uniform2fv(at, value);
             else gl.uniform3fv(at, value);
         }
-        this.textures.forEach((t, k) => {
+        [...this.textures, this.pairs].forEach((t, k) => {
             gl.activeTexture(gl.TEXTURE0 + k);
             gl.bindTexture(gl.TEXTURE_2D, t.texture);
             gl.uniform1i(gl.getUniformLocation(program, t.name), k);
@@ -281,7 +300,22 @@ class Drawing {
         gl.activeTexture(gl.TEXTURE0);
     }
 
+    /* Is the last picture still being drawn? Another one would make the page's thread wait. */
+    get busy() {
+        const {gl, fence} = this;
+        if (fence && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) return true;
+        if (fence) gl.deleteSync(fence);
+        this.fence = null;
+        return false;
+    }
+
     draw() {
+        this.drawAll();
+        this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        this.gl.flush();
+    }
+
+    drawAll() {
         const gl = this.gl, canvas = this.canvas, ratio = Math.min(2, devicePixelRatio || 1), c = this.colours;
         const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
         if (canvas.width !== width || canvas.height !== height) canvas.width = width, canvas.height = height;
@@ -301,12 +335,13 @@ class Drawing {
         gl.drawArrays(gl.TRIANGLES, 0, this.mesh.corners.length / 2);
         gl.disable(gl.POLYGON_OFFSET_FILL);
         gl.enable(gl.BLEND);
+        gl.depthMask(false); // rims would hide lines behind them
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
         this.use('edge', {...shared, width: ratio * Math.min(1.3, 0.4 + pixels / 30), byForce, byLength,
             opacity: byForce ? 0.3 : Math.min(0.75, pixels / 14), lineColour: c.line, pushColour: c.push, pullColour: c.pull});
-        gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.mesh.edges);
-        if (!this.points.length) return;
+        gl.drawArrays(gl.TRIANGLES, 0, 6 * this.mesh.edges);
         this.use('disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle, paperColour: c.paper});
-        gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.points.length);
+        if (this.points.length) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.points.length);
+        gl.depthMask(true);
     }
 }

@@ -552,6 +552,7 @@ static bool go_on(void) {
     if (page.result.outcome != GPROJ_ITERATION_LIMIT && page.result.outcome != GPROJ_STALLED) return false;
     for (int k = FAIRNESS; k < RULES; ++k) /* prepare() puts them on again */
         if (page.group[k] >= 0) gproj_set_schedule(page.form, page.group[k], gproj_keep(0));
+    page.result.iterations = 0;
     return gproj_solve_begin(page.form, 60, &options, NULL);
 }
 
@@ -560,8 +561,10 @@ static bool go_on(void) {
 bool EXPORT(page_step) page_step(double seconds) {
     double begun = page_now();
     while (gproj_solve_is_on(page.form)) {
+        int32_t before = page.result.iterations;
         page.result = gproj_solve_advance(page.form, 0);
-        if (page.course.steps < HISTORY) page.course.history[page.course.steps++] = page.result.residual;
+        if (page.result.iterations != before && page.course.steps < HISTORY) /* else the verdict alone was due */
+            page.course.history[page.course.steps++] = page.result.residual;
         if (page_now() - begun >= seconds) break;
     }
     if (gproj_solve_is_on(page.form)) return true;
@@ -667,7 +670,7 @@ bool EXPORT(page_held) page_held(void) {
 
 /* Lets go: page_step goes on with the release. */
 bool EXPORT(page_release) page_release(void) {
-    page.course.steps = 0;
+    page.course.steps = page.result.iterations = 0;
     return gproj_drag_release(page.drag);
 }
 

@@ -59,6 +59,7 @@ let opened = {name: '', text: ''}; // the mesh as it was opened
 let mesh = null, marks = null, pins = [], selected = -1, hovered = -1, drag = null, saving = null;
 let named = null, marked = null; // what the verdict names, and what of it is marked
 let dirty = true, unseen = false; // a picture is to be drawn; the mesh has not been seen yet
+let pictured = true, linked = true; // the small picture of it and the link to it are there
 const lesson = {number: -1, memory: {}, done: false, history: [], event: null};
 const times = {grab: [], move: []}; // of the last ones, in milliseconds of the worker
 
@@ -116,9 +117,13 @@ function showCourse(history, busy) {
 /* -- frames -- */
 
 function paint() {
-    if (dirty) {
+    if (!linked) writeLink();
+    if (dirty && !drawing.busy) {
         dirty = false;
         drawing.draw();
+    } else if (!pictured && mesh) {
+        pictured = true;
+        thumbnail($('chosen'), new TextDecoder().decode(opened.text));
     }
     requestAnimationFrame(paint);
 }
@@ -173,8 +178,9 @@ const answers = {
         unseen = true;
         if (mesh.text) opened.text = mesh.text;
         $('name').textContent = item || opened.name;
-        $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels, ${mesh.edges} edges`;
-        thumbnail($('chosen'), new TextDecoder().decode(opened.text));
+        $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels`;
+        $('counts').title = `${mesh.edges} edges`;
+        pictured = false;
         showCourse([], false);
         say('Nothing has been solved yet.', '');
         document.body.dataset.mesh = opened.name;
@@ -285,7 +291,6 @@ function thumbnail(canvas, text) {
     const at = p => [width / 2 + scale * (p[0] - (left + right) / 2), height / 2 + scale * (p[1] - (top + bottom) / 2)];
     const tone = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
     const path = face => {
-        context.beginPath();
         face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at(seen[v])));
         context.closePath();
     };
@@ -293,9 +298,16 @@ function thumbnail(canvas, text) {
     const deep = face => face.reduce((sum, v) => sum + seen[v][2], 0) / face.length;
     context.lineWidth = curve ? 2 : Math.min(1, few / 12);
     context.strokeStyle = curve ? tone('--accent') : line;
+    context.fillStyle = fill;
+    if (faces.length > 3000) { // lines would cover it
+        context.fillStyle = tone('--bar');
+        context.beginPath();
+        faces.forEach(path);
+        return context.fill();
+    }
     for (const [face] of faces.map(f => [f, deep(f)]).sort((a, b) => a[1] - b[1])) {
+        context.beginPath();
         path(face);
-        context.fillStyle = fill;
         if (!curve) context.fill();
         context.stroke();
     }
@@ -368,14 +380,16 @@ function showRules() {
     showLink();
 }
 
-/* What the page shows, as the hash of its address. */
-function showLink() {
+/* What the page shows, as the hash of its address: written with the next picture, because browsers do not like it often. */
+function showLink() { linked = false; }
+function writeLink() {
+    linked = true;
     const parts = rules.filter((r, k) => r.label && weights[k]).map(r => `${r.key}=${weights[index[r.key]]}`);
     if (item) parts.unshift(`mesh=${encodeURIComponent(item)}`);
     if (drawing.telling !== 'planarity') parts.push(`colour=${drawing.telling}`);
     if (epsilon()) parts.push(`epsilon=${epsilon()}`);
     if (lesson.number >= 0) parts.push(`lesson=${lesson.number + 1}`);
-    history.replaceState(null, '', '#' + parts.join('&'));
+    if (location.hash !== '#' + parts.join('&')) history.replaceState(null, '', '#' + parts.join('&'));
 }
 
 /* Opens what a hash says. */
@@ -425,7 +439,7 @@ function setTheme(theme) {
     for (const button of document.querySelectorAll('#gallery button')) delete button.dataset.painted;
     if (!drawing) return;
     drawing.readColours();
-    if (mesh) thumbnail($('chosen'), new TextDecoder().decode(opened.text));
+    pictured = !mesh;
     dirty = true;
 }
 
@@ -846,8 +860,8 @@ function makeControls() {
     $('lesson-back').onclick = () => openLesson(lesson.number - 1);
     $('lesson-again').onclick = () => openLesson(lesson.number);
     $('lesson-next').onclick = () => lesson.number + 1 < lessons.length ? openLesson(lesson.number + 1) : closeLesson();
-    $('as-link').onclick = () => show('As a link', item ? 'Opens the page with this mesh and these settings; what was pulled is not in it.' :
-        'Opens the page with these settings; a mesh of your own is not in it.', location.href);
+    $('as-link').onclick = () => writeLink() ?? show('As a link', item ? 'Opens this page with this mesh and these settings; what was pulled is not in it.' :
+        'Opens this page with these settings; a mesh of your own is not in it.', location.href);
     $('as-c').onclick = () => show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
     $('as-command').onclick = () => show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
     $('copy').onclick = copy;

@@ -174,6 +174,7 @@ const does = {
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
         const other = isCurve(text) || levels || lift ? written(false) : undefined;
+        if (other && give(other)) wasm.page_open(other.length, 0, 0, 0); // exactly as who saves it will open it
         opened = {text: other ?? text, settings: opened?.settings ?? [], fixed: new Set(fix)};
         if (settings) does.set({settings});
         for (const vertex of fix) wasm.page_fix(vertex, true);
