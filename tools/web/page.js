@@ -69,6 +69,7 @@ const send = (message, transfer = []) => worker.postMessage(message, transfer);
 
 /* `place`: what the verdict names, as worker.js sends it. */
 function say(text, mood, place = null) {
+    $('sentence').ariaLive = mood === 'busy' ? 'off' : 'polite'; // numbers that run are not to be read aloud
     $('sentence').textContent = text;
     $('verdict').dataset.mood = mood;
     $('verdict').disabled = !place;
@@ -88,7 +89,7 @@ function showState(state) {
     $('redo').disabled = !state.redo;
     if (busy && !state.iterations) say('Setting up.', 'busy');
     else if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
-    showCourse(state.history, busy);
+    showCourse(activity === 'drag' ? [] : state.history, busy);
     if (state.took) {
         times[state.took.what].push(state.took.ms);
         if (times[state.took.what].length > 400) times[state.took.what].shift();
@@ -105,13 +106,13 @@ function showCourse(history, busy) {
     const digits = history.map(r => Math.max(0, Math.min(16, -Math.log10(Math.max(r, 1e-16)))));
     $('course').hidden = history.length === 0;
     $('progress').hidden = !busy;
+    lesson.history = history;
     if (!history.length) return;
     const first = digits[0], best = Math.max(...digits);
     $('progress').value = (best - first) / Math.max(1, 13 - first);
     $('course-bars').innerHTML = digits.slice(-40).map(d => `<i style="height:${4 + 6 * d}%"></i>`).join('');
     $('course-scale').textContent = `digits that hold: ${Math.round(digits[digits.length - 1])}`;
     $('course').setAttribute('aria-label', `${history.length} iterations, residual ${history[history.length - 1].toExponential(0)}`);
-    lesson.history = history;
 }
 
 /* -- frames -- */
@@ -585,8 +586,8 @@ function showNamed() {
     happened({what: 'flown'});
 }
 
-/* Moves the view to a place, in a few pictures. */
-function fly(place, count = 18) {
+/* Moves the view to a place, in a few pictures, or in one where motion is not wanted. */
+function fly(place, count = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : 18) {
     const {view} = drawing, {right} = drawing.axes(), from = view.target.slice(), distance = view.distance, near = Math.min(distance, Math.max(0.3, 14 * mesh.edge));
     const to = place.slice(0, 3).map((p, k) => p - drawing.pixel(near) * inset() / 2 * right[k]);
     let n = 0;
