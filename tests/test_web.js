@@ -1,9 +1,10 @@
-/* test_web.js - drives tools/web's page in headless Chromium by WebDriver: test_web.js PAGE.html WORK TOOL HEADER_FOLDER
-   Uses chromedriver's HTTP interface and nothing that Node does not bring along. GPROJT_SHOTS=FOLDER keeps pictures,
-   GPROJT_TIMES=1 prints what each test takes, GPROJT_ONLY=NAME runs those whose names have NAME. */
+/* test_web.js - drives tools/web's page in headless Chromium by WebDriver: test_web.js PAGE.html WORK TOOL
+   HEADER_FOLDER Uses chromedriver's HTTP interface and nothing that Node does not bring along. GPROJT_SHOTS=FOLDER
+   keeps pictures, GPROJT_TIMES=1 prints what each test takes, GPROJT_ONLY=NAME runs those whose names have NAME. */
 'use strict';
 const {spawn, spawnSync} = require('child_process');
-const fs = require('fs'), path = require('path'), zlib = require('zlib'), crypto = require('crypto'), net = require('net');
+const fs = require('fs'), path = require('path'), zlib = require('zlib'), crypto = require('crypto'),
+      net = require('net');
 
 const [page, work, tool, root] = process.argv.slice(2);
 const shots = process.env.GPROJT_SHOTS;
@@ -62,7 +63,8 @@ function decode(png) {
     while (offset < png.length) {
         const length = png.readUInt32BE(offset), kind = png.toString('latin1', offset + 4, offset + 8);
         const data = png.subarray(offset + 8, offset + 8 + length);
-        if (kind === 'IHDR') width = data.readUInt32BE(0), height = data.readUInt32BE(4), channels = data[9] === 6 ? 4 : 3;
+        if (kind === 'IHDR')
+            width = data.readUInt32BE(0), height = data.readUInt32BE(4), channels = data[9] === 6 ? 4 : 3;
         if (kind === 'IDAT') parts.push(data);
         offset += 12 + length;
     }
@@ -81,16 +83,22 @@ function decode(png) {
 
 async function shoot(name) {
     await wait(() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-    const {data} = await cdp('Page.captureScreenshot', {format: 'png', optimizeForSpeed: true}), png = Buffer.from(data, 'base64');
+    const {data} = await cdp('Page.captureScreenshot', {format: 'png', optimizeForSpeed: true}),
+          png = Buffer.from(data, 'base64');
     if (shots) fs.writeFileSync(path.join(shots, `${name}.png`), png);
     return decode(png);
 }
 
-/* Parts of the canvas, left of the settings, by every fourth pixel: covered by mesh, in the warning colour, blue and red. */
+/* Parts of the canvas, left of the settings, by every fourth pixel: covered by mesh, in the warning colour, blue and
+ * red. */
 async function count(picture) {
-    const box = await run(() => { const b = document.getElementById('canvas').getBoundingClientRect(); return [b.right, b.bottom]; });
+    const box = await run(() => {
+        const b = document.getElementById('canvas').getBoundingClientRect();
+        return [b.right, b.bottom];
+    });
     const ratio = await run(() => devicePixelRatio), seen = {mesh: 0, warn: 0, blue: 0, red: 0};
-    const width = Math.floor(box[0] * ratio), height = Math.floor(Math.min(box[1] * ratio, picture.height)), back = picture.at(4, height - 4);
+    const width = Math.floor(box[0] * ratio), height = Math.floor(Math.min(box[1] * ratio, picture.height)),
+          back = picture.at(4, height - 4);
     const top = Math.floor(70 * ratio), below = height - Math.floor(130 * ratio); // no hint and no legend
     for (let y = top; y < below; y += 2)
         for (let x = 0; x < width; x += 2) {
@@ -128,7 +136,8 @@ function meanEdge({vertices, faces}) {
     return sum / edges;
 }
 
-/* The largest distance of a corner from the plane through the mean that is orthogonal to the vectorial area, in mean edges. */
+/* The largest distance of a corner from the plane through the mean that is orthogonal to the vectorial area, in mean
+ * edges. */
 function warp(mesh) {
     let worst = 0;
     for (const face of mesh.faces) {
@@ -151,7 +160,10 @@ async function open(hash = '') {
     await idle();
 }
 async function choose(name) {
-    await run(name => { document.body.dataset.mesh = ''; [...document.querySelectorAll('#gallery button')].find(b => b.dataset.name === name).click(); }, name);
+    await run(name => {
+        document.body.dataset.mesh = '';
+        [...document.querySelectorAll('#gallery button')].find(b => b.dataset.name === name).click();
+    }, name);
     await until(() => document.body.dataset.mesh, name);
     await until(() => drawing.mesh === mesh && document.body.dataset.activity === 'none', name);
 }
@@ -162,7 +174,18 @@ const seenAt = vertex => run(v => {
 }, vertex);
 const pointer = (pointerType, ...fingers) => call('POST', '/actions', {actions: fingers.map((actions, k) =>
     ({type: 'pointer', id: pointerType + k, parameters: {pointerType}, actions}))});
-const down = {type: 'pointerDown', button: 0}, up = {type: 'pointerUp', button: 0}, pause = {type: 'pause', duration: 0};
+const down = {
+    type: 'pointerDown',
+    button: 0
+},
+      up = {
+          type: 'pointerUp',
+          button: 0
+      },
+      pause = {
+          type: 'pause',
+          duration: 0
+      };
 const to = (x, y, duration = 0) => ({type: 'pointerMove', x, y, duration});
 const median = numbers => numbers.slice().sort((a, b) => a - b)[numbers.length >> 1];
 
@@ -220,7 +243,9 @@ const tests = {
         check(warp(b) <= 1e-12, 'after the release panels are warped by', warp(b));
         const second = await shoot('after_drag'), size = [first.width, first.height];
         let changed = 0;
-        for (let j = 0; j < size[1]; j += 2) for (let i = 0; i < size[0]; i += 2) changed += dot(minus(first.at(i, j), second.at(i, j)), minus(first.at(i, j), second.at(i, j))) > 300;
+        for (let j = 0; j < size[1]; j += 2)
+            for (let i = 0; i < size[0]; i += 2)
+                changed += dot(minus(first.at(i, j), second.at(i, j)), minus(first.at(i, j), second.at(i, j))) > 300;
         check(changed > 0.01 * size[0] * size[1] / 4, 'the picture has not changed');
         await click('#undo');
         await idle();
@@ -233,19 +258,25 @@ const tests = {
     async the_gallery_is_solved() {
         for (const name of await run(() => gallery.map(g => g.name).filter(n => n !== 'Large roof'))) {
             await choose(name);
-            const verdict = await solve(), picture = await count(await shoot(name)), telling = await run(() => drawing.telling);
+            const verdict = await solve(), picture = await count(await shoot(name)),
+                  telling = await run(() => drawing.telling);
             const holds = /^all constraints hold/.test(verdict) && !/spoiled/.test(verdict);
             check(holds === (name !== 'Impossible'), `${name}: ${verdict}`);
             check(picture.mesh > 0.06, `${name}: the mesh covers ${picture.mesh}`);
-            if (name === 'Shell') check(picture.blue > 0.001 && picture.red > 0.001, `${name}: forces are seen as`, picture);
+            if (name === 'Shell')
+                check(picture.blue > 0.001 && picture.red > 0.001, `${name}: forces are seen as`, picture);
             if (telling === 'forces') check(picture.blue > 0.001, `${name}: forces are seen as`, picture);
-            if (telling === 'planarity') check((picture.warn > 0.01) === (name === 'Impossible'), `${name}: after the solve there is`, picture);
+            if (telling === 'planarity')
+                check((picture.warn > 0.01) === (name === 'Impossible'), `${name}: after the solve there is`, picture);
             if (name !== 'Impossible') continue;
-            check(/planarity/.test(verdict) && /boundary|fixed/.test(verdict), 'the contradiction is told so:', verdict);
+            check(
+                /planarity/.test(verdict) && /boundary|fixed/.test(verdict), 'the contradiction is told so:', verdict);
             const before = await run(() => drawing.view.target.slice());
             await click('#verdict');
-            await until(before => drawing.view.target.some((t, k) => Math.abs(t - before[k]) > 1e-3), 'the place that the verdict names', before);
-            check(await run(() => drawing.points.some(([, kind]) => kind === 3) || drawing.marked >= 0), 'the place is not marked');
+            await until(before => drawing.view.target.some((t, k) => Math.abs(t - before[k]) > 1e-3),
+                'the place that the verdict names', before);
+            check(await run(() => drawing.points.some(([, kind]) => kind === 3) || drawing.marked >= 0),
+                'the place is not marked');
         }
     },
     /* Each lesson notices that the thing was done, not before, and leads to files and sections that are there. */
@@ -262,7 +293,11 @@ const tests = {
             async () => {
                 await solve();
                 await click('#undo');
-                await run(() => { const input = document.getElementById('epsilon'); input.value = 0; input.oninput(); });
+                await run(() => {
+                    const input = document.getElementById('epsilon');
+                    input.value = 0;
+                    input.oninput();
+                });
                 await solve();
             },
             async () => { await tick('fairness', 0.5); await solve(); },
@@ -274,10 +309,16 @@ const tests = {
         for (let k = 0; k < things.length; ++k) {
             const read = await run(k => [lessons[k].example, lessons[k].section, lesson.number, lesson.done], k);
             check(read[2] === k && !read[3], `lesson ${k + 1} is not open, or done before it began`, read);
-            check(fs.existsSync(path.join(root, 'examples', read[0])) && header.includes(`   ${read[1]} `), `lesson ${k + 1} leads to`, read);
-            await run(() => { document.body.dataset.verdict = ''; document.getElementById('slow').checked = false; document.getElementById('slow').onchange(); });
+            check(fs.existsSync(path.join(root, 'examples', read[0])) && header.includes(`   ${read[1]} `),
+                `lesson ${k + 1} leads to`, read);
+            await run(() => {
+                document.body.dataset.verdict = '';
+                document.getElementById('slow').checked = false;
+                document.getElementById('slow').onchange();
+            });
             await things[k]();
-            await until(() => lesson.done && document.getElementById('lesson-notice').textContent, `what lesson ${k + 1} notices`);
+            await until(() => lesson.done && document.getElementById('lesson-notice').textContent,
+                `what lesson ${k + 1} notices`);
             if (k === 0) await shoot('lesson');
             await run(() => { document.body.dataset.mesh = ''; });
             await click('#lesson-next');
@@ -292,7 +333,8 @@ const tests = {
         await run(() => {
             document.getElementById('slow').click();
             window.bars = new Set();
-            new MutationObserver(() => bars.add(document.getElementById('course-bars').children.length)).observe(document.getElementById('course-bars'), {childList: true});
+            new MutationObserver(() => bars.add(document.getElementById('course-bars').children.length))
+                .observe(document.getElementById('course-bars'), {childList: true});
         });
         await solve();
         const [bars, iterations] = await run(() => [[...window.bars].filter(n => n > 0), lesson.history.length]);
@@ -308,14 +350,24 @@ const tests = {
         const light = await shoot('lengths');
         check(corner(light) > 200, 'by the switch the corner is', light.at(4, 200));
         await cdp('Emulation.setEmulatedMedia', {features: []});
-        check(await run(() => document.getElementById('colour').value) === 'lengths', 'the link does not carry the colours');
+        check(await run(() => document.getElementById('colour').value) === 'lengths',
+            'the link does not carry the colours');
         const said = [], changed = [];
         for (const which of ['planarity', 'bends', 'forces', 'lengths']) {
-            await run(which => { const select = document.getElementById('colour'); select.value = which; select.onchange(); }, which);
-            await until(which => drawing.telling === which && new URLSearchParams(location.hash.slice(1)).get('colour') === (which === 'planarity' ? null : which), 'colours', which);
+            await run(which => {
+                const select = document.getElementById('colour');
+                select.value = which;
+                select.onchange();
+            }, which);
+            await until(which => drawing.telling === which &&
+                    new URLSearchParams(location.hash.slice(1)).get('colour') ===
+                        (which === 'planarity' ? null : which),
+                'colours', which);
             await idle();
             const picture = await count(await shoot(`colours_${which}`));
-            changed.push(JSON.stringify(picture)), said.push(await run(() => document.getElementById('scale').textContent + document.getElementById('bars').innerHTML));
+            changed.push(JSON.stringify(picture)),
+                said.push(await run(
+                    () => document.getElementById('scale').textContent + document.getElementById('bars').innerHTML));
         }
         check(new Set(changed).size === 4 && new Set(said).size === 4, 'some colours look alike:', changed, said);
     },
@@ -327,11 +379,14 @@ const tests = {
         await until(() => document.body.dataset.mesh === 'cage_fine.obj', 'the subdivided cage');
         check(await run(() => mesh.faces) === 32, 'the subdivided cage has', await run(() => mesh.faces));
         const ring = path.join(work, 'ring.obj');
-        fs.writeFileSync(ring, Array.from({length: 24}, (_, k) => `v ${Math.cos(k * Math.PI / 12)} ${Math.sin(k * Math.PI / 12)} 0\n`).join('') +
-            `l ${Array.from({length: 24}, (_, k) => k + 1).join(' ')} 1\n`);
+        fs.writeFileSync(ring,
+            Array.from({length: 24}, (_, k) => `v ${Math.cos(k * Math.PI / 12)} ${Math.sin(k * Math.PI / 12)} 0\n`)
+                    .join('') +
+                `l ${Array.from({length: 24}, (_, k) => k + 1).join(' ')} 1\n`);
         await upload(ring);
         await until(() => document.body.dataset.mesh === 'ring.obj', 'a filled curve');
-        check(await run(() => mesh.faces) > 20 && /^f /m.test(await run(() => new TextDecoder().decode(opened.text))), 'the curve was not filled');
+        check(await run(() => mesh.faces) > 20 && /^f /m.test(await run(() => new TextDecoder().decode(opened.text))),
+            'the curve was not filled');
     },
     async what_is_no_mesh_is_refused() {
         await choose('Roof');
@@ -350,7 +405,8 @@ const tests = {
         fs.rmSync(noise);
         check(/hold/.test(await solve()), 'after noise it does not solve');
     },
-    /* The work breaks off in the middle of a solve: a new instance goes on from where it began, with the same fixed vertices. */
+    /* The work breaks off in the middle of a solve: a new instance goes on from where it began, with the same fixed
+       vertices. */
     async after_a_trap_it_goes_on() {
         await choose('Roof');
         await solve();
@@ -375,7 +431,10 @@ const tests = {
         await choose('Roof');
         const until_focus = async wanted => {
             for (let k = 0; k < 80; ++k) {
-                if (await run(wanted => document.activeElement.id === wanted || document.activeElement.dataset.name === wanted, wanted)) return;
+                if (await run(wanted => document.activeElement.id === wanted ||
+                            document.activeElement.dataset.name === wanted,
+                        wanted))
+                    return;
                 await press('\uE004');
             }
             check(false, `the tab key does not reach ${wanted}`);
@@ -392,25 +451,41 @@ const tests = {
         await idle();
         const before = await saved();
         await until_focus('canvas');
+        await run(() => { document.body.dataset.verdict = ''; });
         await press(...'n'.repeat(40), '\uE00E');
-        await until(() => !document.getElementById('undo').disabled && document.body.dataset.activity === 'none', 'a nudge');
+        await until(() => document.body.dataset.verdict, 'the end of a nudge');
         await idle();
         const nudged = await saved();
         check(apart(parse(before), parse(nudged)) > 0.05, 'a nudge moves nothing');
-        await call('POST', '/actions', {actions: [{type: 'key', id: 'keys', actions: [{type: 'keyDown', value: '\uE009'},
-            {type: 'keyDown', value: 'z'}, {type: 'keyUp', value: 'z'}, {type: 'keyUp', value: '\uE009'}]}]});
+        await call('POST', '/actions', {
+            actions: [{
+                type: 'key',
+                id: 'keys',
+                actions: [
+                    {type: 'keyDown', value: '\uE009'}, {type: 'keyDown', value: 'z'}, {type: 'keyUp', value: 'z'},
+                    {type: 'keyUp', value: '\uE009'}
+                ]
+            }]
+        });
         await idle();
         check(await saved() === before, 'control Z does not undo the nudge');
-        const nameless = await run(() => [...document.querySelectorAll('button, input, select, canvas, pre, dialog, aside, section[id]')].filter(e =>
-            !(e.ariaHidden === 'true' || e.getAttribute('aria-labelledby') || e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.[0]?.textContent.trim() || e.id === 'code')).map(e => e.outerHTML));
+        const nameless = await run(
+            () => [...document.querySelectorAll('button, input, select, canvas, pre, dialog, aside, section[id]')]
+                      .filter(e => !(e.ariaHidden === 'true' || e.getAttribute('aria-labelledby') ||
+                                  e.getAttribute('aria-label') || e.textContent.trim() ||
+                                  e.labels?.[0]?.textContent.trim() || e.id === 'code'))
+                      .map(e => e.outerHTML));
         check(nameless.length === 0, 'without a name:', nameless);
     },
     async the_same_elsewhere() {
         const tcc = spawnSync('tcc', ['-v']).status === 0; // compiles the header in no time
-        const declared = path.join(work, 'declared');      // the header without its implementation, which others have checked
+        const declared =
+            path.join(work, 'declared'); // the header without its implementation, which others have checked
         fs.mkdirSync(declared, {recursive: true});
-        fs.writeFileSync(path.join(declared, 'guidedproj.h'), `#undef GUIDEDPROJ_IMPLEMENTATION\n#include "${path.resolve(root)}/guidedproj.h"\n`);
-        /* Wishes that are linearised anew in each iteration make more of rounding: there two compilers differ by 1e-3, too. */
+        fs.writeFileSync(path.join(declared, 'guidedproj.h'),
+            `#undef GUIDEDPROJ_IMPLEMENTATION\n#include "${path.resolve(root)}/guidedproj.h"\n`);
+        /* Wishes that are linearised anew in each iteration make more of rounding: there two compilers differ by 1e-3,
+         * too. */
         const exact = 1e-9, alike = 0.02;
         for (const [name, hash, near] of [['roof', '#mesh=Roof&planar=1&gliding=1&fairness=0.1', exact],
             ['roof', '#mesh=Roof&planar=1&fixedCorners=1&closeness=0.05&longest=1.4&epsilon=0.001', exact],
@@ -435,18 +510,24 @@ const tests = {
             const here = parse(await saved());
             check(/hold/.test(verdict), `${hash}: ${verdict}`);
             fs.writeFileSync(path.join(folder, 'solve.c'), program);
-            const read = spawnSync('cc', ['-fsyntax-only', '-Wall', '-Wextra', `-I${declared}`, 'solve.c'], {cwd: folder, encoding: 'utf8'});
+            const read = spawnSync('cc', ['-fsyntax-only', '-Wall', '-Wextra', `-I${declared}`, 'solve.c'],
+                {cwd: folder, encoding: 'utf8'});
             check(read.status === 0 && !read.stderr, `${hash}: as C:`, read.stderr);
-            const built = spawnSync(tcc ? 'tcc' : 'cc', [`-I${root}`, 'solve.c', '-lm', '-o', 'solve'], {cwd: folder, encoding: 'utf8'});
+            const built = spawnSync(
+                tcc ? 'tcc' : 'cc', [`-I${root}`, 'solve.c', '-lm', '-o', 'solve'], {cwd: folder, encoding: 'utf8'});
             check(built.status === 0, `${hash}: as C:`, built.stderr);
             const ran = spawnSync('./solve', {cwd: folder, encoding: 'utf8'});
             check(ran.status === 0, `${hash}: the program ends with`, ran.status, ran.stdout);
-            check(/\d+ iterations/.exec(ran.stdout)[0] === /\d+ iterations/.exec(verdict)[0], `${hash}: here ${verdict}, as C ${ran.stdout}`);
-            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here), `${hash}: as C another mesh comes out`);
+            check(/\d+ iterations/.exec(ran.stdout)[0] === /\d+ iterations/.exec(verdict)[0],
+                `${hash}: here ${verdict}, as C ${ran.stdout}`);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here),
+                `${hash}: as C another mesh comes out`);
             fs.rmSync(path.join(folder, 'solved.obj'));
-            const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
+            const told = spawnSync(
+                'bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
             check(told.status === 0, `${hash}: the command ends with`, told.status, told.stderr, command);
-            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here), `${hash}: as a command another mesh comes out`);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here),
+                `${hash}: as a command another mesh comes out`);
         }
     },
     /* 390 px wide, by fingers: one turns the view, two zoom it, one on a vertex drags it. */
@@ -461,7 +542,8 @@ const tests = {
         const view = () => run(() => [drawing.view.yaw, drawing.view.distance]), first = await view();
         await pointer('touch', [to(60, 80), down, to(120, 90, 60), up]);
         const turned = await view();
-        check(Math.abs(turned[0] - first[0]) > 0.1 && turned[1] === first[1], 'one finger turns the view from', first, 'to', turned);
+        check(Math.abs(turned[0] - first[0]) > 0.1 && turned[1] === first[1], 'one finger turns the view from', first,
+            'to', turned);
         await pointer('touch', [to(180, 60), down, to(140, 60, 60), up], [to(220, 60), down, to(300, 60, 60), up]);
         check((await view())[1] < 0.8 * turned[1], 'two fingers zoom from', turned, 'to', await view());
         await run(() => { document.body.dataset.verdict = ''; fit(); });
@@ -475,13 +557,15 @@ const tests = {
         check(await wide() <= 390, `with a lesson the page is ${await wide()} wide`);
         await cdp('Emulation.clearDeviceMetricsOverride', {});
     },
-    /* Ten thousand vertices: the page's thread is never busy for long, stop comes through within an iteration, and pictures
-       arrive while it releases. Times are printed, and judged by ten times what they should be. */
+    /* Ten thousand vertices: the page's thread is never busy for long, stop comes through within an iteration, and
+       pictures arrive while it releases. Times are printed, and judged by ten times what they should be. */
     async large_meshes() {
         await open('#mesh=Large%20roof&planar=1&fixedCorners=1');
         await run(() => {
             window.longest = window.own = 0;
-            new PerformanceObserver(list => { for (const e of list.getEntries()) longest = Math.max(longest, e.duration); }).observe({type: 'longtask'});
+            new PerformanceObserver(list => {
+                for (const e of list.getEntries()) longest = Math.max(longest, e.duration);
+            }).observe({type: 'longtask'});
             const measured = work => (...all) => {
                 const begun = performance.now();
                 work(...all);
@@ -493,24 +577,31 @@ const tests = {
         });
         await click('#solve');
         await until(() => lesson.history.length > 0, 'an iteration of the large roof');
-        const [on, seen] = await run(() => [document.body.dataset.activity === 'solve', lesson.history.length]), begun = Date.now();
+        const [on, seen] = await run(() => [document.body.dataset.activity === 'solve', lesson.history.length]),
+                   begun = Date.now();
         if (on) await run(() => document.getElementById('stop').click());
         await idle();
-        const stopped = Date.now() - begun, taken = await run(() => lesson.history.length), frames = await run(() => Number(document.body.dataset.frames));
+        const stopped = Date.now() - begun, taken = await run(() => lesson.history.length),
+              frames = await run(() => Number(document.body.dataset.frames));
         check(!on || taken <= seen + 2, `stop was asked for after ${seen} iterations, and it took ${taken}`);
         await solve();
         await run(() => {
             document.body.dataset.verdict = '', window.released = 0;
             const seeing = answers.frame;
-            answers.frame = state => { released += state.activity === 'release' && state.buffer !== null; seeing(state); };
+            answers.frame = state => {
+                released += state.activity === 'release' && state.buffer !== null;
+                seeing(state);
+            };
             const vertex = 42 * 119 + 59, p = drawing.place(vertex);
             send({does: 'grab', vertex, reach: reach()});
             for (let k = 1; k < 8; ++k) send({does: 'move', to: [p[0], p[1], p[2] + 0.2 * k * mesh.edge]});
             send({does: 'release'});
         });
         await until(() => document.body.dataset.verdict, 'the end of the release');
-        const [released, longest, own, grab] = await run(() => [window.released, window.longest, window.own, times.grab.slice(-1)[0]]);
-        console.log(`V = 10,115: longest task of the page ${longest.toFixed(0)} ms with what the browser draws by software, ` +
+        const [released, longest, own, grab] =
+            await run(() => [window.released, window.longest, window.own, times.grab.slice(-1)[0]]);
+        console.log(
+            `V = 10,115: longest task of the page ${longest.toFixed(0)} ms with what the browser draws by software, ` +
             `${own.toFixed(0)} ms of its own (100 wanted); stop ${stopped} ms after iteration ${seen}, ` +
             `${frames} pictures of the first solve, ${released} of the release; grab ${grab.toFixed(0)} ms`);
         check(released > 1, `${released} pictures of the release arrive`);
@@ -518,7 +609,10 @@ const tests = {
         await shoot('large');
     },
     async moves_and_grabs() {
-        await run(() => open('grid.obj', new TextEncoder().encode(grid(40, 41, (s, t) => [10 * s, 10 * t, Math.sin(6 * s) * Math.cos(5 * t)])), {planar: 1, fixedCorners: 1}));
+        await run(
+            () => open('grid.obj',
+                new TextEncoder().encode(grid(40, 41, (s, t) => [10 * s, 10 * t, Math.sin(6 * s) * Math.cos(5 * t)])),
+                {planar: 1, fixedCorners: 1}));
         await until(() => document.body.dataset.mesh === 'grid.obj', 'a mesh of 1,722 vertices');
         await solve();
         const [grab, move] = await wait(async () => {
@@ -536,8 +630,10 @@ const tests = {
             while (times.grab.length < 5) await rest();
             return [times.grab, times.move];
         });
-        console.log(`V = 1,722: a move ${median(move).toFixed(2)} ms (2 wanted), a grab ${median(grab).toFixed(0)} ms (150 wanted), medians of ${move.length} and ${grab.length}`);
-        check(move.length > 20 && median(move) <= 20 && median(grab) <= 1500, 'moves and grabs take', median(move), median(grab));
+        console.log(`V = 1,722: a move ${median(move).toFixed(2)} ms (2 wanted), a grab ${
+            median(grab).toFixed(0)} ms (150 wanted), medians of ${move.length} and ${grab.length}`);
+        check(move.length > 20 && median(move) <= 20 && median(grab) <= 1500, 'moves and grabs take', median(move),
+            median(grab));
     },
     async memory_does_not_grow() {
         await open();
@@ -552,7 +648,8 @@ const tests = {
             return sizes;
         });
         /* The allocator may need one page more (64 KiB) until its pieces fit; what is lost would go on. */
-        check(sizes[199] === sizes[99] && sizes[199] <= sizes[10] + 65536, `memory grows: ${sizes[10]}, ${sizes[99]}, ${sizes[199]}`);
+        check(sizes[199] === sizes[99] && sizes[199] <= sizes[10] + 65536,
+            `memory grows: ${sizes[10]}, ${sizes[99]}, ${sizes[199]}`);
     },
 };
 
@@ -568,13 +665,23 @@ async function main() {
     process.on('exit', () => driver.kill());
     for (let k = 0; k < 200; ++k) if (await fetch(`${hub}/status`).then(() => true, () => sleep(50))) break;
     base = hub;
-    const {sessionId} = await call('POST', '/session', {capabilities: {alwaysMatch: {
-        browserName: 'chrome',
-        'goog:loggingPrefs': {browser: 'ALL', performance: 'ALL'},
-        'goog:chromeOptions': {binary: process.env.CHROMIUM, args: ['headless=new', 'no-sandbox', 'disable-gpu', 'use-angle=swiftshader',
-            'enable-unsafe-swiftshader', 'disable-dev-shm-usage', 'window-size=1280,860', `user-data-dir=${work}/profile`]},
-        timeouts: {script: 120000},
-    }}});
+    const {sessionId} = await call('POST', '/session', {
+        capabilities: {
+            alwaysMatch: {
+                browserName: 'chrome',
+                'goog:loggingPrefs': {browser: 'ALL', performance: 'ALL'},
+                'goog:chromeOptions': {
+                    binary: process.env.CHROMIUM,
+                    args: [
+                        'headless=new', 'no-sandbox', 'disable-gpu', 'use-angle=swiftshader',
+                        'enable-unsafe-swiftshader', 'disable-dev-shm-usage', 'window-size=1280,860',
+                        `user-data-dir=${work}/profile`
+                    ]
+                },
+                timeouts: {script: 120000},
+            }
+        }
+    });
     base = `${hub}/session/${sessionId}`;
     const only = process.env.GPROJT_ONLY || '';
     try {
@@ -583,7 +690,9 @@ async function main() {
             const begun = Date.now();
             await test().catch(error => check(false, `${name}: ${error.message}`));
             if (process.env.GPROJT_TIMES) console.log(`${name}: ${Date.now() - begun} ms`);
-            const noise = (await log('browser')).filter(e => e.level === 'SEVERE' || (e.level === 'WARNING' && !/GL Driver Message|GPU stall/.test(e.message)));
+            const noise = (await log('browser'))
+                              .filter(e => e.level === 'SEVERE' ||
+                                      (e.level === 'WARNING' && !/GL Driver Message|GPU stall/.test(e.message)));
             check(noise.length === 0, `${name}: the console says`, noise.map(e => e.message));
         }
     } finally {

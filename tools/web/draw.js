@@ -1,10 +1,11 @@
-/* draw.js - draws a mesh by WebGL 2: flat-shaded faces coloured by a number each, edges as lines of constant width on the
-   screen, forces as their width and colour, vertices as discs.
+/* draw.js - draws a mesh by WebGL 2: flat-shaded faces coloured by a number each, edges as lines of constant width on
+   the screen, forces as their width and colour, vertices as discs.
 
-   Lines and discs have soft rims of their own, which is smoother than the samples of antialiasing, and without a GPU takes
-   less than half of the time.
+   Lines and discs have soft rims of their own, which is smoother than the samples of antialiasing, and without a GPU
+   takes less than half of the time.
 
-   Vertices, faces and edges lie in textures of floats; a buffer and another texture hold only numbers. So a frame is three uploads. */
+   Vertices, faces and edges lie in textures of floats; a buffer and another texture hold only numbers. So a frame is
+   three uploads. */
 'use strict';
 
 const ROW = 1024; // texels in a row of these textures
@@ -26,7 +27,8 @@ vec4 towards(vec3 p, float way) { return camera * vec4(p + normalize(eye - p) * 
 `;
 
 const shaders = {
-    face: [`${shaderHead}
+    face: [
+        `${shaderHead}
 layout(location = 0) in uvec2 corner; // vertex, face
 uniform float marked; // a face's number, < 0: none
 out vec3 at;
@@ -36,7 +38,8 @@ void main() {
     value = texelFetch(values, texel(corner.y), 0).x;
     mark = float(corner.y) == marked ? 1.0 : 0.0;
     gl_Position = camera * vec4(at, 1);
-}`, `${shaderHead}
+}`,
+        `${shaderHead}
 uniform vec3 handleColour;
 in vec3 at;
 flat in float value, mark;
@@ -47,8 +50,10 @@ void main() {
     vec3 light = normalize(look + vec3(0, 0, 0.9));
     float shade = 0.78 + 0.24 * dot(n, light);
     colour = vec4(mix(ramp(value), handleColour, 0.55 * mark) * min(shade, 1.04), 1);
-}`],
-    edge: [`${shaderHead}
+}`
+    ],
+    edge: [
+        `${shaderHead}
 uniform highp usampler2D pairs; // the ends of edges; six vertices each: an instance each is slow where no GPU is
 uniform float width, byForce, byLength;
 flat out float told, half_width;
@@ -58,7 +63,8 @@ void main() {
     uvec2 ends = texelFetch(pairs, texel(edge), 0).xy;
     if (corner > 2u) corner -= 2u; // 0 1 2, 1 2 3
     told = (byForce + byLength) * texelFetch(forces, texel(edge), 0).x;
-    float way = 0.004 * (1.0 + abs(told)), wide = width * (1.0 + byForce * 7.0 * sqrt(abs(told)) + byLength * 3.0 * told * told);
+    float way = 0.004 * (1.0 + abs(told));
+    float wide = width * (1.0 + byForce * 7.0 * sqrt(abs(told)) + byLength * 3.0 * told * told);
     vec4 a = towards(place(ends.x), way), b = towards(place(ends.y), way);
     vec2 along = (b.xy / b.w - a.xy / a.w) * screen;
     along = length(along) > 1e-6 ? normalize(along) : vec2(1, 0);
@@ -67,7 +73,8 @@ void main() {
     off = (corner < 2u ? 1.0 : -1.0) * (half_width + 1.0);
     p.xy += vec2(-along.y, along.x) * 2.0 * off / screen * p.w;
     gl_Position = p;
-}`, `${shaderHead}
+}`,
+        `${shaderHead}
 uniform vec3 lineColour, pushColour, pullColour;
 uniform float opacity, byLength;
 flat in float told, half_width;
@@ -79,8 +86,10 @@ void main() {
     // from half of the full length on: all edges of a mesh are about alike
     if (byLength > 0.0) colour = vec4(mix(lineColour, ramp(2.0 * told - 1.0), smoothstep(0.5, 0.6, told)), 0.95);
     colour.a *= clamp(half_width + 0.5 - abs(off), 0.0, 1.0);
-}`],
-    disc: [`${shaderHead}
+}`
+    ],
+    disc: [
+        `${shaderHead}
 layout(location = 0) in uvec2 which; // vertex, kind
 uniform float size;
 out vec2 at;
@@ -92,7 +101,8 @@ void main() {
     at = corner;
     p.xy += corner * size * (kind == 1u ? 0.8 : kind == 2u ? 1.25 : kind == 3u ? 2.2 : 0.95) / screen * p.w * 2.0;
     gl_Position = p;
-}`, `${shaderHead}
+}`,
+        `${shaderHead}
 uniform vec3 fixedColour, handleColour, paperColour;
 in vec2 at;
 flat in uint kind;
@@ -102,8 +112,10 @@ void main() {
     if (r > 1.0) discard;
     if (kind == 3u && r < 0.66) discard; // a ring around a vertex that the verdict names
     vec3 inside = kind == 1u ? fixedColour : handleColour;
-    colour = vec4(mix(inside, paperColour, kind == 3u ? 0.0 : smoothstep(0.72 - soft, 0.72, r)), 1.0 - smoothstep(1.0 - soft, 1.0, r));
-}`],
+    float rim = kind == 3u ? 0.0 : smoothstep(0.72 - soft, 0.72, r);
+    colour = vec4(mix(inside, paperColour, rim), 1.0 - smoothstep(1.0 - soft, 1.0, r));
+}`
+    ],
 };
 
 /* "#rrggbb" of a custom property, as three numbers in 0..1. */
@@ -215,7 +227,8 @@ class Drawing {
     get values() { return this.textures[1].data.subarray(0, this.counts.faces); }
     get forces() { return this.textures[2].data.subarray(0, this.counts.edges); }
 
-    /* Pairs [vertex, kind] of discs: kind 1 is fixed, 2 is the handle, 3 is named by the verdict, 4 is under the pointer. */
+    /* Pairs [vertex, kind] of discs: kind 1 is fixed, 2 is the handle, 3 is named by the verdict, 4 is under the
+       pointer. */
     setPoints(points) {
         this.points = points;
         this.fill('disc', new Uint32Array(points.flat()), this.gl.DYNAMIC_DRAW);
@@ -224,7 +237,8 @@ class Drawing {
     /* -- the camera: z is up; right, up and back are the axes of the view -- */
 
     axes() {
-        const {yaw, pitch} = this.view, c = Math.cos(pitch), s = Math.sin(pitch), cy = Math.cos(yaw), sy = Math.sin(yaw);
+        const {yaw, pitch} = this.view, c = Math.cos(pitch), s = Math.sin(pitch), cy = Math.cos(yaw),
+                    sy = Math.sin(yaw);
         return {right: [-sy, cy, 0], up: [-s * cy, -s * sy, c], back: [c * cy, c * sy, s]};
     }
 
@@ -243,7 +257,8 @@ class Drawing {
         const rows = [right, up, back].map(axis => [...axis, -dot(axis, eye)]);
         const depth = (far + near) / (near - far), shift = 2 * far * near / (near - far), m = [];
         for (let k = 0; k < 4; ++k)
-            m.push(focal / aspect * rows[0][k], focal * rows[1][k], depth * rows[2][k] + (k === 3 ? shift : 0), -rows[2][k]);
+            m.push(focal / aspect * rows[0][k], focal * rows[1][k], depth * rows[2][k] + (k === 3 ? shift : 0),
+                -rows[2][k]);
         return m;
     }
 
@@ -261,18 +276,21 @@ class Drawing {
         return 2 * w / (3.2 * Math.min(1, aspect) * this.canvas.clientHeight);
     }
 
-    /* The vertex at a place on the canvas: within 14 CSS pixels, 26 of a finger, but less where edges are short, so that
-       there is room between vertices to turn the view. Of several the nearest to the eye. -1: none. */
+    /* The vertex at a place on the canvas: within 14 CSS pixels, 26 of a finger, but less where edges are short, so
+       that there is room between vertices to turn the view. Of several the nearest to the eye. -1: none. */
     pick(x, y, finger) {
         if (!this.mesh) return -1;
-        const m = this.matrix(), {edge} = this.mesh, p = this.places, width = this.canvas.clientWidth / 2, height = this.canvas.clientHeight / 2;
-        const long = edge / this.pixel(this.view.distance), radius = finger ? Math.max(9, Math.min(26, long / 2)) : Math.max(5, Math.min(14, long / 3));
+        const m = this.matrix(), {edge} = this.mesh, p = this.places, width = this.canvas.clientWidth / 2,
+              height = this.canvas.clientHeight / 2;
+        const long = edge / this.pixel(this.view.distance),
+              radius = finger ? Math.max(9, Math.min(26, long / 2)) : Math.max(5, Math.min(14, long / 3));
         let best = -1, least = Infinity;
         for (let v = 0, k = 0; v < this.counts.vertices; ++v, k += 4) {
             const w = m[3] * p[k] + m[7] * p[k + 1] + m[11] * p[k + 2] + m[15];
             const dx = ((m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) / w + 1) * width - x;
             const dy = (1 - (m[1] * p[k] + m[5] * p[k + 1] + m[9] * p[k + 2] + m[13]) / w) * height - y;
-            const off = Math.sqrt(dx * dx + dy * dy), cost = w + 0.7 * edge * off / radius; // nearer ones first, then those below
+            const off = Math.sqrt(dx * dx + dy * dy),
+                  cost = w + 0.7 * edge * off / radius; // nearer ones first, then those below
             if (off <= radius && cost < least) best = v, least = cost;
         }
         return best;
@@ -337,10 +355,19 @@ class Drawing {
         gl.enable(gl.BLEND);
         gl.depthMask(false); // rims would hide lines behind them
         gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
-        this.use('edge', {...shared, width: ratio * Math.min(1.3, 0.4 + pixels / 30), byForce, byLength,
-            opacity: byForce ? 0.3 : Math.min(0.75, pixels / 14), lineColour: c.line, pushColour: c.push, pullColour: c.pull});
+        this.use('edge', {
+            ...shared,
+            width: ratio * Math.min(1.3, 0.4 + pixels / 30),
+            byForce,
+            byLength,
+            opacity: byForce ? 0.3 : Math.min(0.75, pixels / 14),
+            lineColour: c.line,
+            pushColour: c.push,
+            pullColour: c.pull
+        });
         gl.drawArrays(gl.TRIANGLES, 0, 6 * this.mesh.edges);
-        this.use('disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle, paperColour: c.paper});
+        this.use(
+            'disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle, paperColour: c.paper});
         if (this.points.length) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.points.length);
         gl.depthMask(true);
     }

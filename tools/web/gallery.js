@@ -1,6 +1,7 @@
-/* gallery.js - meshes to begin with, made by formulas, as OBJ texts. Each has rules that are set when it is opened, and a
-   sentence that says what to try. An item may say more: `fix` tells by number and place which vertices are fixed; a text
-   without faces is a curve, which is filled with quads from `corners` corners; `levels` subdivides, and `lift` lifts. */
+/* gallery.js - meshes to begin with, made by formulas, as OBJ texts. Each has rules that are set when it is opened, and
+   a sentence that says what to try. An item may say more: `fix` tells by number and place which vertices are fixed; a
+   text without faces is a curve, which is filled with quads from `corners` corners; `levels` subdivides, and `lift`
+   lifts. */
 'use strict';
 
 const {sin, cos, PI, round, sqrt, hypot} = Math;
@@ -36,22 +37,26 @@ const honeycomb = (rows, columns, place) => collect((at, faces) => {
     for (let j = 0; j < columns; ++j)
         for (let i = 0; i < rows; ++i) {
             const x = 1.5 * j + 1, y = 2 * i + 1 + j % 2;
-            faces.push([[1, 0], [0.5, 1], [-0.5, 1], [-1, 0], [-0.5, -1], [0.5, -1]].map(([dx, dy]) =>
-                at(`${round(6 * (x + dx))},${round(6 * (y + dy))}`, () => place((x + dx) / (1.5 * columns), (y + dy) / (2 * rows)))));
+            faces.push([[1, 0], [0.5, 1], [-0.5, 1], [-1, 0], [-0.5, -1], [0.5, -1]].map(
+                ([dx, dy]) => at(`${round(6 * (x + dx))},${round(6 * (y + dy))}`,
+                    () => place((x + dx) / (1.5 * columns), (y + dy) / (2 * rows)))));
         }
 });
 
 /* A closed curve of `count` points. */
-const curve = (count, place) => Array.from({length: count}, (_, k) => 'v ' + place(2 * PI * k / count).join(' ')).join('\n') +
+const curve = (count, place) =>
+    Array.from({length: count}, (_, k) => 'v ' + place(2 * PI * k / count).join(' ')).join('\n') +
     `\nl ${Array.from({length: count}, (_, k) => k + 1).join(' ')} 1\n`;
 
 /* Hexagons like bricks around an oval dome with an opening (Figure 6). */
 function dome(around, rings) {
     const points = [], faces = [], inner = around / 2;
-    const number = (j, i) => j === 0 ? i % around / 2 : inner + (j - 1) * around + (j === rings ? i % around / 2 : i % around);
+    const number = (j, i) =>
+        j === 0 ? i % around / 2 : inner + (j - 1) * around + (j === rings ? i % around / 2 : i % around);
     for (let j = 0; j <= rings; ++j)
         for (let i = 0; i < around; i += j % rings ? 1 : 2) {
-            const up = 0.1 + 1.1 * (j + (j % rings ? (i + j) % 2 ? -0.17 : 0.17 : 0)) / rings, turn = 2 * PI * i / around;
+            const up = 0.1 + 1.1 * (j + (j % rings ? (i + j) % 2 ? -0.17 : 0.17 : 0)) / rings,
+                  turn = 2 * PI * i / around;
             points.push([12 * cos(up) * cos(turn), 9 * cos(up) * sin(turn), 7 * (sin(up) - sin(0.1))]);
         }
     for (let j = 0; j < rings; ++j)
@@ -91,7 +96,8 @@ const diamonds = (side, place) => collect((at, faces) => {
         for (let j = 0; j <= side; ++j) {
             const around = [[i + 1, j], [i, j + 1], [i - 1, j], [i, j - 1]]
                 .filter(([a, b]) => a >= 0 && b >= 0 && a <= side && b <= side);
-            if ((i + j) % 2) faces.push(around.map(([a, b]) => at(`${a},${b}`, () => place(2 * a / side - 1, 2 * b / side - 1))));
+            if ((i + j) % 2)
+                faces.push(around.map(([a, b]) => at(`${a},${b}`, () => place(2 * a / side - 1, 2 * b / side - 1))));
         }
 });
 
@@ -101,7 +107,8 @@ const sectors = (feet, side) => collect((at, faces) => {
         if (a === 0 && b > 0) return vertex(s + 1, b, 0);
         return at(a === 0 ? 'middle' : `${s % feet},${a},${b}`, () => {
             const turn = 2 * PI / feet, bend = 1 - 0.27 * a * b / (side * side);
-            const x = bend * (a * cos(turn * s) + b * cos(turn * (s + 1))), y = bend * (a * sin(turn * s) + b * sin(turn * (s + 1)));
+            const x = bend * (a * cos(turn * s) + b * cos(turn * (s + 1))),
+                  y = bend * (a * sin(turn * s) + b * sin(turn * (s + 1)));
             return [x, y, 7 * side / 12 * (1 - (x * x + y * y) / (1.5 * side * side))];
         });
     };
@@ -155,7 +162,9 @@ function hall(long, wide) {
     }
     return grid(long, wide, (s, t, i, j) => {
         const [x, y, turn] = street[i], angle = 2.4 * t - 1.2, ripple = 1 + 0.03 * sin(0.8 * i + 0.9 * j);
-        return [x - 5 * ripple * sin(angle) * sin(turn), y + 5 * ripple * sin(angle) * cos(turn), 4 * ripple * cos(angle)];
+        return [
+            x - 5 * ripple * sin(angle) * sin(turn), y + 5 * ripple * sin(angle) * cos(turn), 4 * ripple * cos(angle)
+        ];
     });
 }
 
@@ -169,13 +178,17 @@ const funnel = () => grid(10, 26, (s, t, i, j) => {
 /* Arches of a hall that branches in two, as a cage of 24 quads (Figures 2 and 11). */
 function cage() {
     const points = [
-        [-10, -4, 0], [-10.6, -3.6, 3.4], [-11.5, 0, 5.8], [-10.6, 3.6, 3.4], [-10, 4, 0], [-5, -4, 0], [-5, -3.3, 3], [-5, 0, 4.4],
-        [-5, 3.3, 3], [-5, 4, 0], [0, -5, 0], [0, -4, 3.2], [1, 0, 4.6], [0, 4, 3.2], [0, 5, 0], [4, 0, 0], [3.2, 0, 2.8], [4, -8, 0],
-        [4.4, -7, 2.9], [5.3, -5, 4], [6.2, -3, 2.9], [6.6, -2, 0], [7, -11, 0], [7.8, -10.2, 3.2], [9.4, -8, 5], [10.4, -5.8, 3.2],
-        [10, -4.6, 0], [6.6, 2, 0], [6.2, 3, 2.9], [5.3, 5, 4], [4.4, 7, 2.9], [4, 8, 0], [10, 4.6, 0], [10.4, 5.8, 3.2], [9.4, 8, 5],
-        [7.8, 10.2, 3.2], [7, 11, 0]];
+        [-10, -4, 0], [-10.6, -3.6, 3.4], [-11.5, 0, 5.8], [-10.6, 3.6, 3.4], [-10, 4, 0], [-5, -4, 0], [-5, -3.3, 3],
+        [-5, 0, 4.4], [-5, 3.3, 3], [-5, 4, 0], [0, -5, 0], [0, -4, 3.2], [1, 0, 4.6], [0, 4, 3.2], [0, 5, 0],
+        [4, 0, 0], [3.2, 0, 2.8], [4, -8, 0], [4.4, -7, 2.9], [5.3, -5, 4], [6.2, -3, 2.9], [6.6, -2, 0], [7, -11, 0],
+        [7.8, -10.2, 3.2], [9.4, -8, 5], [10.4, -5.8, 3.2], [10, -4.6, 0], [6.6, 2, 0], [6.2, 3, 2.9], [5.3, 5, 4],
+        [4.4, 7, 2.9], [4, 8, 0], [10, 4.6, 0], [10.4, 5.8, 3.2], [9.4, 8, 5], [7.8, 10.2, 3.2], [7, 11, 0]
+    ];
     const arch = first => [0, 1, 2, 3, 4].map(k => first + k), near = [10, 11, 12, 16, 15], far = [15, 16, 12, 13, 14];
-    const spans = [[arch(0), arch(5)], [arch(5), arch(10)], [near, arch(17)], [arch(17), arch(22)], [far, arch(27)], [arch(27), arch(32)]];
+    const spans = [
+        [arch(0), arch(5)], [arch(5), arch(10)], [near, arch(17)], [arch(17), arch(22)], [far, arch(27)],
+        [arch(27), arch(32)]
+    ];
     return textOf(points, spans.flatMap(([a, b]) => [0, 1, 2, 3].map(k => [a[k], b[k], b[k + 1], a[k + 1]])));
 }
 
@@ -203,7 +216,7 @@ const gallery = [
     },
     {
         name: 'Shell', group: 'Begin', rules: {equilibrium: 1, fixedBoundary: 1}, colour: 'forces',
-        hint: 'Edges carry the weight of the panels. Solve: blue is compression, red is tension. Then ask for compression only.',
+        hint: 'Edges carry the weight of the panels. Solve: blue pushes, red pulls. Then ask for compression only.',
         make: () => grid(14, 20, (s, t) => {
             const x = 10 * t - 5, y = 7 * s - 3.5;
             return [x, y, 2.6 * (1 - (x / 5) ** 2) * (1 - (y / 3.5) ** 2) + 0.9 * cos(PI * x / 5) * (y / 3.5) ** 2];
@@ -219,8 +232,11 @@ const gallery = [
     },
     {
         name: 'Cage', group: 'Begin', rules: {planar: 1, fairness: 0.1},
-        hint: 'A cage of few panels. Pull at it, then Subdivide: each panel becomes four, and a smooth form appears. Then solve.',
-        make: () => grid(2, 4, (s, t) => [4 * t - 2, 3 * s - 1.5, (t === 0.5 ? 1.6 : t % 0.5 ? 1.2 : 0) * (s === 0.5 ? 1 : 1.3)]),
+        hint: 'A cage of few panels. Pull at it, then Subdivide: each becomes four, and a smooth form appears. Solve.',
+        make: () => grid(2, 4, (s, t) => {
+            const high = t === 0.5 ? 1.6 : t % 0.5 ? 1.2 : 0;
+            return [4 * t - 2, 3 * s - 1.5, high * (s === 0.5 ? 1 : 1.3)];
+        }),
     },
     {
         name: 'Canopy', figure: '1', group: 'From the paper', colour: 'forces', example: 'self_supporting_roof.c',
@@ -271,7 +287,8 @@ const gallery = [
         make: () => diamonds(20, (x, y) => [14 * x, 10 * y, 6 * cos(PI * x / 2) * cos(PI * y / 2)]),
     },
     {
-        name: 'Ribs', figure: '8', group: 'From the paper', fix: (v, p) => hypot(p[0], p[1]) > 13.9, example: 'parallelograms.c',
+        name: 'Ribs', figure: '8', group: 'From the paper', example: 'parallelograms.c',
+        fix: (v, p) => hypot(p[0], p[1]) > 13.9,
         rules: {planar: 1, closeness: 0.02, fairness: 0.05, parallelograms: 2},
         hint: 'A canopy on five feet. Nobody asks for ribs: panels that like to be parallelograms make them.',
         make: () => sectors(5, 12),
@@ -283,9 +300,9 @@ const gallery = [
         make: () => horn(36, 16),
     },
     {
-        name: 'Greenhouse', figure: '13', group: 'From the paper', colour: 'forces', corners: 4, example: 'greenhouse.c',
+        name: 'Greenhouse', figure: '13', group: 'From the paper', colour: 'forces', example: 'greenhouse.c', corners: 4,
         rules: {equilibrium: 1, compression: 1, gliding: 1, lifting: 1},
-        hint: 'A flat net. Solve lifts it until it stands. Then untick “height only”, tick “right angles”, wish for fair lines, and solve.',
+        hint: 'A flat net. Solve lifts it until it stands. Then free the heights, ask for right angles and fair lines.',
         make: () => curve(44, a => {
             const turn = a + 0.12 * sin(2 * a);
             return [14 * cos(turn), 8 * sin(turn) - 1.5 * cos(2 * turn), 0];
@@ -300,7 +317,7 @@ const gallery = [
     {
         name: 'Conical', figure: '3.5', group: 'From the paper', example: 'conical_mesh.c',
         rules: {planar: 1, conical: 1, fairness: 0.01, closeness: 0.03},
-        hint: 'The panels around each node touch a cone: such meshes have a second layer whose panels are all equally far.',
+        hint: 'Panels around a node touch a cone: such meshes have a second layer whose panels are all equally far.',
         make: () => hall(28, 10),
     },
     {

@@ -153,7 +153,8 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
     for (int32_t e = 0; e < mesh->edge_count; ++e) page.opened.longest = fmax(page.opened.longest, edge_length(e));
 }
 
-/* Fills the first polyline of a mesh without faces with quads. Corners are found, or `corners` points at equal numbers. */
+/* Fills the first polyline of a mesh without faces with quads. Corners are found, or `corners` points at equal
+   numbers. */
 static gproj_mesh *fill(const gproj_mesh *curve, int32_t corners, gproj_error *error) {
     int32_t count = curve->polyline_start[1], *corner = NULL, at;
     const int32_t *vertex = curve->polyline_vertex;
@@ -212,8 +213,8 @@ static gproj_mesh *read(size_t size, int32_t corners, int32_t levels, double hei
     return mesh;
 }
 
-/* Opens the text of `size` bytes in the block, OBJ or OFF; see read(). False: page_sentence says why, and the mesh before
-   stays. */
+/* Opens the text of `size` bytes in the block, OBJ or OFF; see read(). False: page_sentence says why, and the mesh
+   before stays. */
 bool EXPORT(page_open) page_open(size_t size, int32_t corners, int32_t levels, double height) {
     gproj_error error;
     gproj_mesh *mesh = read(size, corners, levels, height, &error);
@@ -237,8 +238,8 @@ int32_t EXPORT(page_vertices) page_vertices(void) { return page.mesh->vertex_cou
 int32_t EXPORT(page_edges) page_edges(void) { return page.mesh->edge_count; }
 int32_t EXPORT(page_faces) page_faces(void) { return page.mesh->face_count; }
 
-/* Fills the block with pairs of uint32: for each corner of triangles its vertex and its face, then for each edge its two
-   ends. A triangle fan for each face. Returns the number of triangles, 0 without memory. */
+/* Fills the block with pairs of uint32: for each corner of triangles its vertex and its face, then for each edge
+   its two ends. A triangle fan for each face. Returns the number of triangles, 0 without memory. */
 int32_t EXPORT(page_topology) page_topology(void) {
     const gproj_mesh *mesh = page.mesh;
     int32_t triangles = 0;
@@ -289,7 +290,8 @@ static void tell_planarity(float *face, double *work) {
         face[f] = (float)fmin(1, fmax(0, (log10(fmax(work[f], 1e-9)) + 4) / 2));
 }
 
-/* The largest angle with a neighbour, which is the longest edge of the Gauss image at the face's normal; 1: 30 degrees. */
+/* The largest angle with a neighbour, which is the longest edge of the Gauss image at the face's normal; 1: 30
+   degrees. */
 static void tell_bends(float *face, double *work) {
     const gproj_mesh *mesh = page.mesh;
     const double full = 3.14159265358979 / 6;
@@ -322,9 +324,9 @@ static void tell_forces(float *edge, double *work) {
     for (int32_t e = 0; e < edges; ++e) edge[e] = (float)(largest > 0 ? work[e] / largest : 0);
 }
 
-/* Fills the block with floats: for each vertex x, y, z (relative) and 0; for each face and for each edge a number for its
-   colour: faces have 0..1 where planarity or bends are told, edges -1..1 where forces are told, and where lengths are told
-   their part of the longest one that is allowed, or was there at first. All others are 0. */
+/* Fills the block with floats: for each vertex x, y, z (relative) and 0; for each face and for each edge a number
+   for its colour: faces have 0..1 where planarity or bends are told, edges -1..1 where forces are told, and where
+   lengths are told their part of the longest one that is allowed, or was there at first. All others are 0. */
 bool EXPORT(page_frame) page_frame(void) {
     const gproj_mesh *mesh = page.mesh;
     size_t vertices = (size_t)mesh->vertex_count, faces = (size_t)mesh->face_count, edges = (size_t)mesh->edge_count;
@@ -374,7 +376,8 @@ size_t EXPORT(page_write) page_write(bool off) {
     return code == GPROJ_OK ? used : 0;
 }
 
-/* What undo needs, in the block: positions, then force densities, all doubles. Returns their number, 0 without memory. */
+/* What undo needs, in the block: positions, then force densities, all doubles. Returns their number, 0 without
+   memory. */
 int32_t EXPORT(page_snapshot) page_snapshot(void) {
     size_t count = 3 * (size_t)page.mesh->vertex_count, edges = (size_t)page.mesh->edge_count;
     double *out = page_block(sizeof *out * (count + edges));
@@ -556,8 +559,8 @@ static bool go_on(void) {
     return gproj_solve_begin(page.form, 60, &options, NULL);
 }
 
-/* Goes on for `seconds`, and one iteration at least, with the solve or the release that is on. Returns whether there is more
-   to do; at the end the sentence is the verdict. */
+/* Goes on for `seconds`, and one iteration at least, with the solve or the release that is on. Returns whether
+   there is more to do; at the end the sentence is the verdict. */
 bool EXPORT(page_step) page_step(double seconds) {
     double begun = page_now();
     while (gproj_solve_is_on(page.form)) {
@@ -599,8 +602,8 @@ bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
     return page.drag != NULL;
 }
 
-/* Leads the handle on by `way` along the unit vector `along`. Returns how far the vertex that moved most has moved; < 0: the
-   sentence says why that was refused. */
+/* Leads the handle on by `way` along the unit vector `along`. Returns how far the vertex that moved most has
+   moved; < 0: the sentence says why that was refused. */
 static double lead(const double along[3], double way) {
     const gproj_mesh *mesh = page.mesh;
     double to[3], most = 0;
@@ -626,9 +629,9 @@ enum {
     ON_THE_WAY
 };
 
-/* Moves the grabbed vertex towards a place, relative, for about a tenth of a second. The error grows with the square of what
-   vertices move, so none moves by more than a quarter of an edge at once. A short probe tells how far the others would: where
-   the handle hardly yields they would fly, and it is held. */
+/* Moves the grabbed vertex towards a place, relative, for about a tenth of a second. The error grows with the
+   square of what vertices move, so none moves by more than a quarter of an edge at once. A short probe tells how far
+   the others would: where the handle hardly yields they would fly, and it is held. */
 int32_t EXPORT(page_move) page_move(double x, double y, double z) {
     const double relative[3] = {x, y, z}, edge = gproj_mesh_mean_edge_length(page.mesh), begun = page_now();
     int again = 0;
@@ -708,8 +711,9 @@ static bool find_middle(gproj_place place, int32_t element, double out[3]) {
     return true;
 }
 
-/* The element that the verdict names, in the block as 5 doubles: its middle, relative, what it is (0 vertex, 1 edge, 2 face)
-   and its number. That is the worst one, or, where all holds, the first one that is spoiled. False: it names none. */
+/* The element that the verdict names, in the block as 5 doubles: its middle, relative, what it is (0 vertex, 1
+   edge, 2 face) and its number. That is the worst one, or, where all holds, the first one that is spoiled. False: it
+   names none. */
 bool EXPORT(page_named) page_named(void) {
     const gproj_result *r = &page.result;
     double *out = page_block(5 * sizeof *out);

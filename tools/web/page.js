@@ -4,42 +4,49 @@
 
 const $ = id => document.getElementById(id);
 
-/* The rules in the order of `rule` in page.c: what the page calls them, how the command line and C do. `most`: a slider gives
-   the weight, or, with `factor`, a factor; wishes have `wish`. */
+/* The rules in the order of `rule` in page.c: what the page calls them, how the command line and C do. `most`: a slider
+   gives the weight, or, with `factor`, a factor; wishes have `wish`. */
 const rules = [
     {key: 'planar', label: 'Panels are flat', command: '--planar', c: 'gproj_add_planarity(form, 1)'},
-    {key: 'circular', label: 'Panels have a circumcircle', command: '--circular', c: 'gproj_add_circularity(form, 1)', needs: 'planar'},
-    {key: 'conical', label: 'Nodes are conical', command: '--conical', c: 'gproj_add_conicality(form, 1)', needs: 'planar'},
+    {key: 'circular', label: 'Panels have a circumcircle', command: '--circular', needs: 'planar',
+        c: 'gproj_add_circularity(form, 1)'},
+    {key: 'conical', label: 'Nodes are conical', command: '--conical', needs: 'planar',
+        c: 'gproj_add_conicality(form, 1)'},
     {key: 'equalLengths', label: 'Edges are equally long', command: '--equal-lengths',
         c: 'gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1)'},
     {key: 'equilibrium', label: 'Forces balance the weight', command: '--equilibrium --area-load 1',
         c: 'gproj_add_equilibrium(form, &loads, &supports, 1)'},
-    {key: 'compression', label: 'Compression only', command: '--compressive', needs: 'equilibrium', excludes: ['tension'],
-        c: 'gproj_add_compression(form, mesh->edge_count, NULL, 1)'},
-    {key: 'tension', label: 'Tension only', command: '--tensile', needs: 'equilibrium', excludes: ['compression'],
-        c: 'gproj_add_tension(form, mesh->edge_count, NULL, 1)'},
-    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary', c: 'gproj_add_fixed_boundary(form, 1)',
-        excludes: ['gliding', 'fixedCorners']},
-    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners', c: 'gproj_add_fixed_corners(form, 1)',
-        excludes: ['fixedBoundary', 'gliding']},
-    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary', c: 'gproj_add_gliding_boundary(form, 1)',
-        excludes: ['fixedBoundary', 'fixedCorners']},
+    {key: 'compression', label: 'Compression only', command: '--compressive', needs: 'equilibrium',
+        excludes: ['tension'], c: 'gproj_add_compression(form, mesh->edge_count, NULL, 1)'},
+    {key: 'tension', label: 'Tension only', command: '--tensile', needs: 'equilibrium',
+        excludes: ['compression'], c: 'gproj_add_tension(form, mesh->edge_count, NULL, 1)'},
+    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary',
+        excludes: ['gliding', 'fixedCorners'], c: 'gproj_add_fixed_boundary(form, 1)'},
+    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners',
+        excludes: ['fixedBoundary', 'gliding'], c: 'gproj_add_fixed_corners(form, 1)'},
+    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary',
+        excludes: ['fixedBoundary', 'fixedCorners'], c: 'gproj_add_gliding_boundary(form, 1)'},
     {key: 'lifting', label: 'Vertices move in height only', command: '--lifting', c: 'gproj_add_lifting(form, 1)'},
-    {key: 'orthogonal', label: 'Right angles at the boundary', command: '--orthogonal-boundary', c: 'gproj_add_orthogonal_boundary(form, 1)'},
+    {key: 'orthogonal', label: 'Right angles at the boundary', command: '--orthogonal-boundary',
+        c: 'gproj_add_orthogonal_boundary(form, 1)'},
     {key: 'volume', label: 'Volume', most: 2, step: 0.05, factor: true, command: '--volume',
         c: 'gproj_add_volume(form, FACTOR * gproj_volume(mesh), 1)'},
-    {key: 'longest', label: 'Longest edge', most: 2.5, step: 0.05, factor: true, command: '--edge-length',
-        c: 'gproj_add_length_bounds(form, mesh->edge_count, NULL, 0, FACTOR * gproj_mesh_mean_edge_length(mesh), 1)'},
+    {key: 'longest', label: 'Longest edge', most: 2.5, step: 0.05, factor: true, command: '--edge-length', c:
+        'gproj_add_length_bounds(form, mesh->edge_count, NULL, 0, FACTOR * gproj_mesh_mean_edge_length(mesh), 1)'},
     {key: 'fixed'},
     {key: 'fairness', label: 'Fair lines', most: 0.5, wish: '--fairness ', c: 'gproj_add_fairness(form, 1)'},
     {key: 'closeness', label: 'Near the start', most: 0.5, wish: '--closeness ', c: 'gproj_add_closeness(form, 1)'},
-    {key: 'reference', label: 'Near its surface', most: 0.5, wish: '--reference FILE=', c: 'gproj_add_reference(form, surface, 1)'},
-    {key: 'tangential', label: 'Even panels', most: 0.5, wish: '--tangential ', c: 'gproj_add_tangential_fairness(form, 1)'},
-    {key: 'gauss', label: 'Calm normals', most: 0.5, wish: '--gauss ', c: 'gproj_add_gauss_fairness(form, 1)', needs: 'planar'},
+    {key: 'reference', label: 'Near its surface', most: 0.5, wish: '--reference FILE=',
+        c: 'gproj_add_reference(form, surface, 1)'},
+    {key: 'tangential', label: 'Even panels', most: 0.5, wish: '--tangential ',
+        c: 'gproj_add_tangential_fairness(form, 1)'},
+    {key: 'gauss', label: 'Calm normals', most: 0.5, wish: '--gauss ', needs: 'planar',
+        c: 'gproj_add_gauss_fairness(form, 1)'},
     {key: 'equalAreas', label: 'Equal areas', most: 0.5, wish: '--equal-areas=', c: 'gproj_add_equal_areas(form, 1)'},
-    {key: 'parallelograms', label: 'Parallelograms', most: 2, step: 0.05, wish: '--parallelograms=', c: 'gproj_add_parallelograms(form, 1)'},
-    {key: 'forceFairness', label: 'Even forces', most: 0.5, wish: '--force-fairness=', c: 'gproj_add_force_fairness(form, 1)',
-        needs: 'equilibrium'},
+    {key: 'parallelograms', label: 'Parallelograms', most: 2, step: 0.05, wish: '--parallelograms=',
+        c: 'gproj_add_parallelograms(form, 1)'},
+    {key: 'forceFairness', label: 'Even forces', most: 0.5, wish: '--force-fairness=', needs: 'equilibrium',
+        c: 'gproj_add_force_fairness(form, 1)'},
 ];
 const index = Object.fromEntries(rules.map((r, k) => [r.key, k]));
 const CONVERGED = 0;
@@ -88,7 +95,10 @@ function showState(state) {
     $('undo').disabled = !state.undo;
     $('redo').disabled = !state.redo;
     if (busy && !state.iterations) say('Setting up.', 'busy');
-    else if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
+    else if (busy)
+        say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${
+                state.residual.toExponential(1)}.`,
+            'busy');
     showCourse(activity === 'drag' ? [] : state.history, busy);
     if (state.took) {
         times[state.took.what].push(state.took.ms);
@@ -112,7 +122,8 @@ function showCourse(history, busy) {
     $('progress').value = (best - first) / Math.max(1, 13 - first);
     $('course-bars').innerHTML = digits.slice(-40).map(d => `<i style="height:${4 + 6 * d}%"></i>`).join('');
     $('course-scale').textContent = `digits that hold: ${Math.round(digits[digits.length - 1])}`;
-    $('course').setAttribute('aria-label', `${history.length} iterations, residual ${history[history.length - 1].toExponential(0)}`);
+    $('course').setAttribute(
+        'aria-label', `${history.length} iterations, residual ${history[history.length - 1].toExponential(0)}`);
 }
 
 /* -- frames -- */
@@ -132,7 +143,8 @@ function paint() {
 /* Bars over the ramp: how many panels, or edges, have which colour. */
 function showLegend() {
     const told = colours.find(c => c.key === drawing.telling), count = 24, bars = new Array(count).fill(0);
-    const ofFaces = told.key === 'planarity' || told.key === 'bends', part = {forces: [0.5, 0.5], lengths: [2, -1]}[told.key] || [1, 0];
+    const ofFaces = told.key === 'planarity' || told.key === 'bends',
+          part = {forces: [0.5, 0.5], lengths: [2, -1]}[told.key] || [1, 0];
     for (const value of ofFaces ? drawing.values : drawing.forces)
         bars[Math.max(0, Math.min(count - 1, Math.floor((part[0] * value + part[1]) * count)))]++;
     const most = Math.max(1, ...bars);
@@ -150,7 +162,8 @@ function showPoints() {
     if (hovered >= 0) points.push([hovered, 4]);
     if (selected >= 0) points.push([selected, 2]);
     if (marked && marked[3] < 2) // a vertex, or the ends of an edge
-        for (const v of marked[3] ? mesh.ends.subarray(2 * marked[4], 2 * marked[4] + 2) : [marked[4]]) points.push([v, 3]);
+        for (const v of marked[3] ? mesh.ends.subarray(2 * marked[4], 2 * marked[4] + 2) : [marked[4]])
+            points.push([v, 3]);
     drawing.setPoints(points);
     $('fix').disabled = selected < 0;
     $('free').disabled = pins.length === 0;
@@ -259,7 +272,8 @@ function parse(text) {
 
 /* Opens an item of the gallery, with its rules or others. */
 function choose(name, preset = null) {
-    const chosen = gallery.find(g => g.name === name) || gallery[0], text = chosen.make(), {corners, levels, lift} = chosen;
+    const chosen = gallery.find(g => g.name === name) || gallery[0], text = chosen.make(),
+          {corners, levels, lift} = chosen;
     const fix = chosen.fix ? parse(text).points.flatMap((p, v) => chosen.fix(v, p) ? [v] : []) : [];
     item = chosen.name;
     setColour(chosen.colour || 'planarity');
@@ -275,7 +289,8 @@ async function subdivide() {
 }
 
 function showItem() {
-    for (const button of document.querySelectorAll('#gallery button')) button.setAttribute('aria-pressed', String(button.dataset.name === item));
+    for (const button of document.querySelectorAll('#gallery button'))
+        button.setAttribute('aria-pressed', String(button.dataset.name === item));
     const chosen = gallery.find(g => g.name === item);
     $('hint').textContent = chosen && lesson.number < 0 ? chosen.hint : '';
 }
@@ -286,8 +301,10 @@ function thumbnail(canvas, text) {
     const {points, faces} = parse(text), context = canvas.getContext('2d'), {width, height} = canvas;
     context.clearRect(0, 0, width, height);
     if (!points.length || points.length > 30000) return;
-    const seen = points.map(([x, y, z]) => [0.867 * x + 0.498 * y, -0.239 * x + 0.416 * y - 0.878 * z, 0.437 * x - 0.761 * y + 0.479 * z]);
-    const range = k => [Math.min(...seen.map(p => p[k])), Math.max(...seen.map(p => p[k]))], [left, right] = range(0), [top, bottom] = range(1);
+    const seen = points.map(
+        ([x, y, z]) => [0.867 * x + 0.498 * y, -0.239 * x + 0.416 * y - 0.878 * z, 0.437 * x - 0.761 * y + 0.479 * z]);
+    const range = k => [Math.min(...seen.map(p => p[k])), Math.max(...seen.map(p => p[k]))], [left, right] = range(0),
+          [top, bottom] = range(1);
     const scale = Math.min(0.86 * width / (right - left || 1), 0.82 * height / (bottom - top || 1));
     const at = p => [width / 2 + scale * (p[0] - (left + right) / 2), height / 2 + scale * (p[1] - (top + bottom) / 2)];
     const tone = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -295,7 +312,8 @@ function thumbnail(canvas, text) {
         face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at(seen[v])));
         context.closePath();
     };
-    const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text), few = Math.sqrt(width * height / Math.max(1, faces.length));
+    const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text),
+                 few = Math.sqrt(width * height / Math.max(1, faces.length));
     const deep = face => face.reduce((sum, v) => sum + seen[v][2], 0) / face.length;
     context.lineWidth = curve ? 2 : Math.min(1, few / 12);
     context.strokeStyle = curve ? tone('--accent') : line;
@@ -318,13 +336,16 @@ function makeShelf() {
     let group = '';
     for (const {name, figure, group: of} of gallery) {
         if (of !== group) $('gallery').append(Object.assign(document.createElement('h3'), {textContent: group = of}));
-        const button = document.createElement('button'), canvas = document.createElement('canvas'), text = document.createElement('span');
+        const button = document.createElement('button'), canvas = document.createElement('canvas'),
+              text = document.createElement('span');
         Object.assign(canvas, {width: 240, height: 180});
         canvas.setAttribute('aria-hidden', 'true');
         text.textContent = name;
         button.dataset.name = name;
         button.append(canvas, text);
-        if (figure) button.append(Object.assign(document.createElement('small'), {textContent: figure.includes('.') ? `§ ${figure}` : `Fig. ${figure}`}));
+        if (figure)
+            button.append(Object.assign(document.createElement('small'),
+                {textContent: figure.includes('.') ? `§ ${figure}` : `Fig. ${figure}`}));
         button.onclick = () => {
             $('shelf').close();
             closeLesson();
@@ -375,13 +396,16 @@ function setWeights(preset) {
 function showRules() {
     rules.forEach((r, k) => {
         if (!r.input) return;
-        if (r.most) r.input.value = weights[k], r.output.value = weights[k] ? `${r.factor ? '×' : ''}${weights[k].toFixed(2)}` : 'off';
+        if (r.most)
+            r.input.value = weights[k],
+            r.output.value = weights[k] ? `${r.factor ? '×' : ''}${weights[k].toFixed(2)}` : 'off';
         else r.input.checked = weights[k] > 0;
     });
     showLink();
 }
 
-/* What the page shows, as the hash of its address: written with the next picture, because browsers do not like it often. */
+/* What the page shows, as the hash of its address: written with the next picture, because browsers do
+   not like it often. */
 function showLink() { linked = false; }
 function writeLink() {
     linked = true;
@@ -455,7 +479,19 @@ const standing = {
 };
 
 function openLesson(number) {
-    const {title, text, task, mesh: name, rules: preset, colour, reach = 5, slow = false, epsilon = 0, example, section} = lessons[number];
+    const {
+        title,
+        text,
+        task,
+        mesh: name,
+        rules: preset,
+        colour,
+        reach = 5,
+        slow = false,
+        epsilon = 0,
+        example,
+        section
+    } = lessons[number];
     Object.assign(lesson, {number, memory: {}, done: false, event: null});
     $('lesson').hidden = false;
     document.body.dataset.lesson = number + 1;
@@ -466,8 +502,10 @@ function openLesson(number) {
     $('lesson-try').textContent = task;
     $('lesson-notice').textContent = '';
     /* In the repository, where the page was made, the files are beside it. */
-    const beside = /\/tools\/web\/build\/[^/]*$/.test(location.pathname), file = (path, words) => beside ? `<a href="../../../${path}" target="_blank">${words}</a>` : words;
-    $('lesson-links').innerHTML = `Read on: ${file(`examples/${example}`, `examples/${example}`)}; ${section} in ${file('guidedproj.h', 'guidedproj.h')}`;
+    const beside = /\/tools\/web\/build\/[^/]*$/.test(location.pathname),
+          file = (path, words) => beside ? `<a href="../../../${path}" target="_blank">${words}</a>` : words;
+    $('lesson-links').innerHTML = `Read on: ${file(`examples/${example}`, `examples/${example}`)}; ${section} in ${
+        file('guidedproj.h', 'guidedproj.h')}`;
     $('lesson-back').disabled = number === 0;
     $('lesson-next').textContent = number + 1 < lessons.length ? 'Next' : 'Done';
     $('reach').value = reach;
@@ -588,7 +626,8 @@ function showNamed() {
 
 /* Moves the view to a place, in a few pictures, or in one where motion is not wanted. */
 function fly(place, count = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : 18) {
-    const {view} = drawing, {right} = drawing.axes(), from = view.target.slice(), distance = view.distance, near = Math.min(distance, Math.max(0.3, 14 * mesh.edge));
+    const {view} = drawing, {right} = drawing.axes(), from = view.target.slice(), distance = view.distance,
+          near = Math.min(distance, Math.max(0.3, 14 * mesh.edge));
     const to = place.slice(0, 3).map((p, k) => p - drawing.pixel(near) * inset() / 2 * right[k]);
     let n = 0;
     const next = () => {
@@ -622,7 +661,17 @@ function listenToPointers(canvas) {
         select(vertex);
         if (vertex < 0) return;
         const place = drawing.place(vertex), w = drawing.project(place)[2];
-        drag = {vertex, x, y, place, scale: drawing.pixel(w), axes: drawing.axes(), begun: false, waiting: false, target: null};
+        drag = {
+            vertex,
+            x,
+            y,
+            place,
+            scale: drawing.pixel(w),
+            axes: drawing.axes(),
+            begun: false,
+            waiting: false,
+            target: null
+        };
     });
     canvas.addEventListener('pointermove', event => {
         const [x, y] = at(event), before = pointers.get(event.pointerId);
@@ -633,7 +682,8 @@ function listenToPointers(canvas) {
         const dx = x - before.x, dy = y - before.y;
         if (pointers.size === 2) {
             const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
-            zoom(Math.hypot(before.x - other.x, before.y - other.y) / Math.max(1, Math.hypot(x - other.x, y - other.y)));
+            zoom(
+                Math.hypot(before.x - other.x, before.y - other.y) / Math.max(1, Math.hypot(x - other.x, y - other.y)));
             pan(dx / 2, dy / 2);
         } else if (drag) {
             pull(x, y, event.altKey);
@@ -761,7 +811,8 @@ function cArray(type, name, numbers) {
 }
 
 function asProgram() {
-    const fixed = fixedList(), moved = movedList(), lines = [], supports = isOn('equilibrium'), surface = isOn('reference');
+    const fixed = fixedList(), moved = movedList(), lines = [], supports = isOn('equilibrium'),
+          surface = isOn('reference');
     const out = (...more) => lines.push(...more);
     out('/* Build and run: cc -O2 -I. solve.c -lm -o solve && ./solve */', '#define GUIDEDPROJ_IMPLEMENTATION',
         '#include "guidedproj.h"', '#include <stdio.h>', '#include <stdlib.h>', '', 'int main(void) {',
@@ -771,7 +822,8 @@ function asProgram() {
     if (surface) out('    gproj_surface *surface = gproj_surface_create(mesh, NULL, &error);');
     if (supports && isClosed()) {
         out('    /* Panels weigh 1 per area; fixed vertices carry. */', '    gproj_loads loads = {.area_load = 1};',
-            cArray('int32_t', 'support', pins.map(pin => pin[0])), `    gproj_supports supports = {${pins.length}, support, NULL};`);
+            cArray('int32_t', 'support', pins.map(pin => pin[0])),
+            `    gproj_supports supports = {${pins.length}, support, NULL};`);
     } else if (supports) {
         out('    /* Panels weigh 1 per area; the boundary carries. */', '    gproj_loads loads = {.area_load = 1};',
             '    int32_t *boundary = malloc(sizeof *boundary * (size_t)mesh->vertex_count);', '    int32_t count = 0;',
@@ -780,7 +832,9 @@ function asProgram() {
             '    gproj_supports supports = {count, boundary, NULL};');
     }
     if (fixed.length) out(cArray('int32_t', 'fixed', fixed));
-    if (moved.length) out(cArray('int32_t', 'moved', moved.map(pin => pin[0])), cArray('double', 'places', moved.flatMap(pin => pin.slice(1, 4))));
+    if (moved.length)
+        out(cArray('int32_t', 'moved', moved.map(pin => pin[0])),
+            cArray('double', 'places', moved.flatMap(pin => pin.slice(1, 4))));
     rules.forEach((r, k) => {
         if (!weights[k] || !r.c) return;
         if (r.wish) out(`    gproj_set_schedule(form, ${r.c}, gproj_fade(${weights[k]}, ${supports ? 9 : 6}));`);
@@ -789,7 +843,8 @@ function asProgram() {
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
     out('    gproj_result result = gproj_solve(form, 200, &options);', '    puts(result.message);',
-        '    if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "solved.obj", &error);', '    gproj_form_destroy(form);');
+        '    if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "solved.obj", &error);',
+        '    gproj_form_destroy(form);');
     if (surface) out('    gproj_surface_destroy(surface);');
     out('    gproj_mesh_destroy(mesh);');
     if (supports && !isClosed()) out('    free(boundary);');
@@ -807,19 +862,25 @@ function show(title, note, text) {
 
 /* Copies the text, or, where the browser does not let it, selects it. */
 function copy() {
-    const told = words => { $('copy').textContent = words; setTimeout(() => { $('copy').textContent = 'Copy'; }, 1500); };
+    const told = words => {
+        $('copy').textContent = words;
+        setTimeout(() => { $('copy').textContent = 'Copy'; }, 1500);
+    };
     getSelection().selectAllChildren($('code'));
-    (navigator.clipboard?.writeText($('code').textContent) ?? Promise.reject()).then(() => told('Copied'), () => told('Selected'));
+    (navigator.clipboard?.writeText($('code').textContent) ?? Promise.reject())
+        .then(() => told('Copied'), () => told('Selected'));
 }
 
 /* -- beginning -- */
 
 function makeControls() {
     makeShelf();
-    for (const {key, label} of colours) $('colour').append(Object.assign(document.createElement('option'), {value: key, textContent: label}));
+    for (const {key, label} of colours)
+        $('colour').append(Object.assign(document.createElement('option'), {value: key, textContent: label}));
     for (const rule of rules) {
         if (!rule.label) continue;
-        const label = document.createElement('label'), input = document.createElement('input'), text = document.createElement('span');
+        const label = document.createElement('label'), input = document.createElement('input'),
+              text = document.createElement('span');
         text.textContent = rule.label;
         rule.input = input;
         if (rule.most) {
@@ -861,10 +922,15 @@ function makeControls() {
     $('lesson-back').onclick = () => openLesson(lesson.number - 1);
     $('lesson-again').onclick = () => openLesson(lesson.number);
     $('lesson-next').onclick = () => lesson.number + 1 < lessons.length ? openLesson(lesson.number + 1) : closeLesson();
-    $('as-link').onclick = () => writeLink() ?? show('As a link', item ? 'Opens this page with this mesh and these settings; what was pulled is not in it.' :
-        'Opens this page with these settings; a mesh of your own is not in it.', location.href);
-    $('as-c').onclick = () => show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
-    $('as-command').onclick = () => show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
+    $('as-link').onclick = () => writeLink() ??
+        show('As a link',
+            item ? 'Opens this page with this mesh and these settings; what was pulled is not in it.'
+                 : 'Opens this page with these settings; a mesh of your own is not in it.',
+            location.href);
+    $('as-c').onclick = () =>
+        show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
+    $('as-command').onclick = () =>
+        show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
     $('copy').onclick = copy;
     $('save-opened').onclick = () => download(opened.name, opened.text);
     $('close').onclick = () => $('dialog').close();

@@ -1,6 +1,6 @@
-/* worker.js - one worker with one instance of page.c. The page sends messages {does: name, ...}; answers are {is: name, ...}.
-   Frames travel in buffers that the page gives back. A solve runs in pieces of a few milliseconds, so that messages get
-   through; what is undone lies here as snapshots. */
+/* worker.js - one worker with one instance of page.c. The page sends messages {does: name, ...}; answers are {is: name,
+   ...}. Frames travel in buffers that the page gives back. A solve runs in pieces of a few milliseconds, so that
+   messages get through; what is undone lies here as snapshots. */
 'use strict';
 
 const REFUSED = 0, ON_THE_WAY = 2; // see page_move
@@ -75,15 +75,27 @@ function postMesh(name, text) {
     const corners = new Uint32Array(wasm.memory.buffer.slice(at, at + 24 * triangles));
     const ends = new Uint32Array(wasm.memory.buffer.slice(at + 24 * triangles, at + 24 * triangles + 8 * edges));
     setFrames(4 * (4 * vertices + faces + edges));
-    postMessage({is: 'mesh', name, vertices, faces, edges, corners, ends, text, edge: wasm.page_reach(1), meanEdge: wasm.page_mean_edge(),
-        memory: wasm.memory.buffer.byteLength});
+    postMessage({
+        is: 'mesh',
+        name,
+        vertices,
+        faces,
+        edges,
+        corners,
+        ends,
+        text,
+        edge: wasm.page_reach(1),
+        meanEdge: wasm.page_mean_edge(),
+        memory: wasm.memory.buffer.byteLength
+    });
     postMarks();
 }
 
 function postMarks() {
     if (!wasm.page_marks()) return;
     const marks = bytes(wasm.page_block(0), wasm.page_vertices()).slice(), count = wasm.page_pins();
-    const pins = Array.from({length: count}, (_, k) => Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0) + 40 * k, 5)));
+    const pins = Array.from(
+        {length: count}, (_, k) => Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0) + 40 * k, 5)));
     postMessage({is: 'marks', marks, pins});
 }
 
@@ -197,8 +209,10 @@ const does = {
     },
     fix({vertex, on}) {
         wasm.page_fix(vertex, on);
-        if (on) opened.fixed.add(vertex);
-        else opened.fixed.delete(vertex);
+        if (on)
+            opened.fixed.add(vertex);
+        else
+            opened.fixed.delete(vertex);
         postMarks();
     },
     solve({iterations}) {
@@ -245,7 +259,10 @@ const does = {
         if (drag) undo.pop();
         settle();
         postFrame();
-        postMessage({is: 'told', sentence: drag ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.'});
+        postMessage({
+            is: 'told',
+            sentence: drag ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.'
+        });
     },
     undo() { exchange(undo, redo); },
     redo() { exchange(redo, undo); },
