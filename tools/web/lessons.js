@@ -13,8 +13,8 @@ const lessons = [
         text: 'Three points always lie in a plane. A fourth does so by chance only, and a panel of glass has four.',
         task: 'Nothing must hold here. Pull one vertex in the middle of the sheet up.',
         done: (event, memory, page) => event.what === 'verdict' && event.after === 'release' && page.warped() > 0,
-        notice: (memory, page) => `${page.warped()} of 192 panels are warped by more than 0.03 % of an edge: the fourth ` +
-            'corner of each has left the plane of the other three. Tick “Panels are flat” and solve.',
+        notice: (memory, page) => `${page.warped()} of 192 panels are warped, those around the vertex: one corner of each has ` +
+            'left the plane of the other three. Undo, tick “Panels are flat” and “Corners stay”, and pull again.',
     },
     {
         title: 'Quadratic by new variables', example: 'custom_constraint.c', section: '>>api-system',

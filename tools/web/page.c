@@ -671,10 +671,25 @@ bool EXPORT(page_held) page_held(void) {
     return page.held || gproj_drag_get_info(page.drag).behind > gproj_mesh_mean_edge_length(page.mesh) / 2;
 }
 
+/* Ends a drag where nothing must hold: a release would only fair what was led. */
+static void leave(void) {
+    size_t bytes = 3 * sizeof *page.before * (size_t)page.mesh->vertex_count;
+    memcpy(page.before, page.mesh->position, bytes);
+    gproj_drag_cancel(page.drag);
+    page.drag = NULL;
+    memcpy(page.mesh->position, page.before, bytes);
+    memset(&page.result, 0, sizeof page.result);
+    page.result.worst_group = -1;
+    strcpy(page.result.message, "nothing must hold: the vertices stay where they were led");
+}
+
 /* Lets go: page_step goes on with the release. */
 bool EXPORT(page_release) page_release(void) {
     page.course.steps = page.result.iterations = 0;
-    return gproj_drag_release(page.drag);
+    for (int k = 0; k < FAIRNESS; ++k)
+        if (page.weight[k] > 0) return gproj_drag_release(page.drag);
+    leave();
+    return true;
 }
 
 /* Ends what is on: a drag and its release go back to where they began, a solve stays where it is. */

@@ -55,8 +55,8 @@ const CONVERGED = 0;
 const colours = [
     {key: 'planarity', label: 'Planarity of panels', low: 'flat', high: '1 % of an edge'},
     {key: 'forces', label: 'Forces in edges', low: 'tension', high: 'compression'},
-    {key: 'bends', label: 'Gauss image: angles of normals', low: '0°', high: '30° and more'},
-    {key: 'lengths', label: 'Lengths of edges, utilised', low: '50 %', high: '100 % of the longest'},
+    {key: 'bends', label: 'Gauss image: angles', low: '0°', high: '30° and more'},
+    {key: 'lengths', label: 'Lengths: utilisation', low: '50 %', high: '100 % of the longest'},
 ];
 const epsilons = [0, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]; // 0: it follows the residual
 
