@@ -300,7 +300,8 @@ const gallery = [
         make: () => horn(36, 16),
     },
     {
-        name: 'Greenhouse', figure: '13', group: 'From the paper', colour: 'forces', example: 'greenhouse.c', corners: 4,
+        name: 'Greenhouse', figure: '13', group: 'From the paper', colour: 'forces', example: 'greenhouse.c',
+        corners: 4,
         rules: {equilibrium: 1, compression: 1, gliding: 1, lifting: 1},
         hint: 'A flat net. Solve lifts it until it stands. Then free the heights, ask for right angles and fair lines.',
         make: () => curve(44, a => {
