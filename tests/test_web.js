@@ -365,6 +365,11 @@ const tests = {
                 'colours', which);
             await idle();
             const picture = await count(await shoot(`colours_${which}`));
+            const sphere = await run(() => {
+                const canvas = document.getElementById('gauss');
+                return !canvas.hidden && canvas.getContext('2d').getImageData(0, 0, 392, 240).data.some(x => x > 0);
+            });
+            check(sphere === (which === 'bends'), `${which}: the Gauss image is seen: ${sphere}`);
             changed.push(JSON.stringify(picture)),
                 said.push(await run(
                     () => document.getElementById('scale').textContent + document.getElementById('bars').innerHTML));

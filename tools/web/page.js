@@ -133,6 +133,7 @@ function paint() {
     if (dirty && !drawing.busy) {
         dirty = false;
         drawing.draw();
+        if (drawing.telling === 'bends' && mesh) showGauss();
     } else if (!pictured && mesh) {
         pictured = true;
         thumbnail($('chosen'), new TextDecoder().decode(opened.text));
@@ -152,6 +153,32 @@ function showLegend() {
     $('legend').classList.toggle('forces', told.key === 'forces');
     const high = told.key === 'lengths' && weights[index.longest] ? '100 % of the allowed' : told.high;
     $('scale').innerHTML = `<span>${told.low}</span><span>${high}</span>`;
+}
+
+/* The Gauss image, seen as the mesh is: the panels' normals as points of a sphere, those behind it paler. */
+function showGauss() {
+    const canvas = $('gauss'), context = canvas.getContext('2d'), {corners} = mesh, at = drawing.places;
+    const {width, height} = canvas, radius = height / 2 - 6, normals = new Float64Array(3 * mesh.faces);
+    for (let k = 0; k < corners.length; k += 6) {
+        const [a, b, c] = [4 * corners[k], 4 * corners[k + 2], 4 * corners[k + 4]], n = 3 * corners[k + 1];
+        const u = [0, 1, 2].map(i => at[b + i] - at[a + i]), v = [0, 1, 2].map(i => at[c + i] - at[a + i]);
+        for (let i = 0; i < 3; ++i) normals[n + i] += u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+    }
+    const {right, up, back} = drawing.axes(), style = getComputedStyle(document.documentElement);
+    context.clearRect(0, 0, width, height);
+    context.strokeStyle = style.getPropertyValue('--hover');
+    context.lineWidth = 2;
+    context.beginPath();
+    context.arc(width / 2, height / 2, radius, 0, 2 * Math.PI);
+    context.stroke();
+    context.fillStyle = style.getPropertyValue('--accent');
+    for (let f = 0; f < 3 * mesh.faces; f += 3) {
+        const n = [normals[f], normals[f + 1], normals[f + 2]], scale = radius / (Math.hypot(...n) || 1);
+        const along = axis => scale * (n[0] * axis[0] + n[1] * axis[1] + n[2] * axis[2]);
+        context.globalAlpha = along(back) > 0 ? 0.8 : 0.25;
+        context.fillRect(width / 2 + along(right) - 1.5, height / 2 - along(up) - 1.5, 3, 3);
+    }
+    context.globalAlpha = 1;
 }
 
 function showPoints() {
@@ -445,6 +472,7 @@ function setRule(key, weight) {
 function setColour(which) {
     drawing.telling = which;
     $('colour').value = which;
+    $('gauss').hidden = which !== 'bends';
     if (worker) send({does: 'tell', which: colours.findIndex(c => c.key === which)});
     showLink();
 }
