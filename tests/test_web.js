@@ -641,6 +641,7 @@ const tests = {
             median(grab));
     },
     async memory_does_not_grow() {
+        await cdp('Emulation.setDeviceMetricsOverride', {width: 400, height: 300, deviceScaleFactor: 1, mobile: false});
         await open();
         const sizes = await wait(async () => {
             const sizes = [];
