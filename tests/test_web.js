@@ -1,8 +1,10 @@
-/* test_web.js - drives tools/web's page in headless Chromium by WebDriver: test_web.js PAGE.html WORK TOOL HEADER_FOLDER
-   Uses chromedriver's HTTP interface and nothing that Node does not bring along. GPROJT_SHOTS=FOLDER keeps pictures. */
+/* test_web.js - drives tools/web's page in headless Chromium by WebDriver: test_web.js PAGE.html WORK TOOL
+   HEADER_FOLDER Uses chromedriver's HTTP interface and nothing that Node does not bring along. GPROJT_SHOTS=FOLDER
+   keeps pictures, GPROJT_TIMES=1 prints what each test takes, GPROJT_ONLY=NAME runs those whose names have NAME. */
 'use strict';
 const {spawn, spawnSync} = require('child_process');
-const fs = require('fs'), path = require('path'), zlib = require('zlib'), crypto = require('crypto'), net = require('net');
+const fs = require('fs'), path = require('path'), zlib = require('zlib'), crypto = require('crypto'),
+      net = require('net');
 
 const [page, work, tool, root] = process.argv.slice(2);
 const shots = process.env.GPROJT_SHOTS;
@@ -61,7 +63,8 @@ function decode(png) {
     while (offset < png.length) {
         const length = png.readUInt32BE(offset), kind = png.toString('latin1', offset + 4, offset + 8);
         const data = png.subarray(offset + 8, offset + 8 + length);
-        if (kind === 'IHDR') width = data.readUInt32BE(0), height = data.readUInt32BE(4), channels = data[9] === 6 ? 4 : 3;
+        if (kind === 'IHDR')
+            width = data.readUInt32BE(0), height = data.readUInt32BE(4), channels = data[9] === 6 ? 4 : 3;
         if (kind === 'IDAT') parts.push(data);
         offset += 12 + length;
     }
@@ -80,26 +83,32 @@ function decode(png) {
 
 async function shoot(name) {
     await wait(() => new Promise(resolve => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-    const png = Buffer.from(await call('GET', '/screenshot'), 'base64');
+    const {data} = await cdp('Page.captureScreenshot', {format: 'png', optimizeForSpeed: true}),
+          png = Buffer.from(data, 'base64');
     if (shots) fs.writeFileSync(path.join(shots, `${name}.png`), png);
     return decode(png);
 }
 
-/* Parts of the canvas, left of the settings: covered by mesh, in the warning colour, blue and red. */
+/* Parts of the canvas, left of the settings, by every fourth pixel: covered by mesh, in the warning colour, blue and
+ * red. */
 async function count(picture) {
-    const box = await run(() => { const b = document.getElementById('canvas').getBoundingClientRect(); return [b.right, b.bottom]; });
+    const box = await run(() => {
+        const b = document.getElementById('canvas').getBoundingClientRect();
+        return [b.right, b.bottom];
+    });
     const ratio = await run(() => devicePixelRatio), seen = {mesh: 0, warn: 0, blue: 0, red: 0};
-    const width = Math.floor(box[0] * ratio), height = Math.floor(Math.min(box[1] * ratio, picture.height)), back = picture.at(4, height - 4);
-    const top = Math.floor(70 * ratio), below = height - Math.floor(90 * ratio); // no hint and no legend
-    for (let y = top; y < below; ++y)
-        for (let x = 0; x < width; ++x) {
+    const width = Math.floor(box[0] * ratio), height = Math.floor(Math.min(box[1] * ratio, picture.height)),
+          back = picture.at(4, height - 4);
+    const top = Math.floor(70 * ratio), below = height - Math.floor(130 * ratio); // no hint and no legend
+    for (let y = top; y < below; y += 2)
+        for (let x = 0; x < width; x += 2) {
             const [r, g, b] = picture.at(x, y);
             seen.mesh += Math.abs(r - back[0]) + Math.abs(g - back[1]) + Math.abs(b - back[2]) > 24;
             seen.warn += r > 150 && r - b > 100;
             seen.blue += b > r + 60;
             seen.red += r > g + 70 && Math.abs(g - b) < 40;
         }
-    for (const key in seen) seen[key] /= width * (below - top);
+    for (const key in seen) seen[key] /= width * (below - top) / 4;
     return seen;
 }
 
@@ -127,7 +136,8 @@ function meanEdge({vertices, faces}) {
     return sum / edges;
 }
 
-/* The largest distance of a corner from the plane through the mean that is orthogonal to the vectorial area, in mean edges. */
+/* The largest distance of a corner from the plane through the mean that is orthogonal to the vectorial area, in mean
+ * edges. */
 function warp(mesh) {
     let worst = 0;
     for (const face of mesh.faces) {
@@ -150,10 +160,35 @@ async function open(hash = '') {
     await idle();
 }
 async function choose(name) {
-    await run(name => { document.body.dataset.mesh = ''; [...document.querySelectorAll('#gallery button')].find(b => b.textContent === name).click(); }, name);
+    await run(name => {
+        document.body.dataset.mesh = '';
+        [...document.querySelectorAll('#gallery button')].find(b => b.dataset.name === name).click();
+    }, name);
     await until(() => document.body.dataset.mesh, name);
     await until(() => drawing.mesh === mesh && document.body.dataset.activity === 'none', name);
 }
+/* Where a vertex appears in the window. */
+const seenAt = vertex => run(v => {
+    const box = drawing.canvas.getBoundingClientRect(), p = drawing.project(drawing.place(v));
+    return [Math.round(p[0] + box.left), Math.round(p[1] + box.top)];
+}, vertex);
+const pointer = (pointerType, ...fingers) => call('POST', '/actions', {actions: fingers.map((actions, k) =>
+    ({type: 'pointer', id: pointerType + k, parameters: {pointerType}, actions}))});
+const down = {
+    type: 'pointerDown',
+    button: 0
+},
+      up = {
+          type: 'pointerUp',
+          button: 0
+      },
+      pause = {
+          type: 'pause',
+          duration: 0
+      };
+const to = (x, y, duration = 0) => ({type: 'pointerMove', x, y, duration});
+const median = numbers => numbers.slice().sort((a, b) => a - b)[numbers.length >> 1];
+
 async function solve() {
     await run(() => { document.body.dataset.verdict = ''; document.body.dataset.error = ''; });
     await click('#solve');
@@ -184,19 +219,15 @@ const tests = {
     },
     async a_vertex_is_dragged() {
         const before = await saved(), first = await shoot('before_drag');
-        const [x, y] = await run(() => {
-            const box = drawing.canvas.getBoundingClientRect(), v = 10 * 21 + 10, p = drawing.project(drawing.place(v));
-            return [Math.round(p[0] + box.left), Math.round(p[1] + box.top)];
-        });
+        const [x, y] = await seenAt(10 * 21 + 10);
         const v = await run((x, y) => {
             const box = drawing.canvas.getBoundingClientRect();
             return drawing.pick(x - box.left, y - box.top, false);
         }, x, y);
-        const mouse = actions => call('POST', '/actions', {actions: [{type: 'pointer', id: 'mouse', parameters: {pointerType: 'mouse'}, actions}]});
-        await mouse([{type: 'pointerMove', x, y, duration: 0}, {type: 'pointerDown', button: 0}]);
+        await pointer('mouse', [to(x, y), down]);
         let worst = 0, seen = 0;
         for (let k = 1; k <= 12; ++k) {
-            await mouse([{type: 'pointerMove', x: x + 3 * k, y: y - 5 * k, duration: 20}]);
+            await pointer('mouse', [to(x + 3 * k, y - 5 * k, 20)]);
             await sleep(30);
             const at = await run(() => [document.body.dataset.activity, Number(document.body.dataset.residual)]);
             if (at[0] === 'drag') worst = Math.max(worst, at[1]), ++seen;
@@ -205,14 +236,16 @@ const tests = {
         check(seen > 3, `only ${seen} moves were seen`);
         check(worst < 0.05, 'while it is dragged what must hold is off by', worst);
         await shoot('drag');
-        await mouse([{type: 'pointerUp', button: 0}]);
+        await pointer('mouse', [up]);
         await until(() => document.body.dataset.activity === 'none', 'the end of the release');
         const after = await saved(), a = parse(before), b = parse(after);
         check(Math.hypot(...minus(a.vertices[v], b.vertices[v])) > meanEdge(a) / 2, 'the handle has not moved');
         check(warp(b) <= 1e-12, 'after the release panels are warped by', warp(b));
         const second = await shoot('after_drag'), size = [first.width, first.height];
         let changed = 0;
-        for (let j = 0; j < size[1]; j += 2) for (let i = 0; i < size[0]; i += 2) changed += dot(minus(first.at(i, j), second.at(i, j)), minus(first.at(i, j), second.at(i, j))) > 300;
+        for (let j = 0; j < size[1]; j += 2)
+            for (let i = 0; i < size[0]; i += 2)
+                changed += dot(minus(first.at(i, j), second.at(i, j)), minus(first.at(i, j), second.at(i, j))) > 300;
         check(changed > 0.01 * size[0] * size[1] / 4, 'the picture has not changed');
         await click('#undo');
         await idle();
@@ -225,19 +258,140 @@ const tests = {
     async the_gallery_is_solved() {
         for (const name of await run(() => gallery.map(g => g.name).filter(n => n !== 'Large roof'))) {
             await choose(name);
-            await shoot(`${name}_opened`);
-            const verdict = await solve(), picture = await count(await shoot(`${name}_solved`));
+            const verdict = await solve(), picture = await count(await shoot(name)),
+                  telling = await run(() => drawing.telling);
             const holds = /^all constraints hold/.test(verdict) && !/spoiled/.test(verdict);
             check(holds === (name !== 'Impossible'), `${name}: ${verdict}`);
-            check(picture.mesh > 0.1, `${name}: the mesh covers ${picture.mesh}`);
-            if (name === 'Shell') check(picture.blue > 0.001 && picture.red > 0.001, `${name}: forces are seen as`, picture);
-            else check((picture.warn > 0.01) === (name === 'Impossible'), `${name}: after the solve there is`, picture);
+            check(picture.mesh > 0.06, `${name}: the mesh covers ${picture.mesh}`);
+            if (name === 'Shell')
+                check(picture.blue > 0.001 && picture.red > 0.001, `${name}: forces are seen as`, picture);
+            if (telling === 'forces') check(picture.blue > 0.001, `${name}: forces are seen as`, picture);
+            if (telling === 'planarity')
+                check((picture.warn > 0.01) === (name === 'Impossible'), `${name}: after the solve there is`, picture);
             if (name !== 'Impossible') continue;
-            check(/planarity/.test(verdict) && /boundary|fixed/.test(verdict), 'the contradiction is told so:', verdict);
+            check(
+                /planarity/.test(verdict) && /boundary|fixed/.test(verdict), 'the contradiction is told so:', verdict);
             const before = await run(() => drawing.view.target.slice());
             await click('#verdict');
-            await until(before => drawing.view.target.some((t, k) => Math.abs(t - before[k]) > 1e-3), 'the place that the verdict names', before);
+            await until(before => drawing.view.target.some((t, k) => Math.abs(t - before[k]) > 1e-3),
+                'the place that the verdict names', before);
+            check(await run(() => drawing.points.some(([, kind]) => kind === 3) || drawing.marked >= 0),
+                'the place is not marked');
         }
+    },
+    /* Each lesson notices that the thing was done, not before, and leads to files and sections that are there. */
+    async lessons_notice() {
+        const header = fs.readFileSync(path.join(root, 'guidedproj.h'), 'utf8');
+        const tick = (key, weight) => run((key, weight) => setRule(key, weight), key, weight);
+        const things = [
+            async () => {
+                const [x, y] = await seenAt(6 * 17 + 8);
+                await pointer('mouse', [to(x, y), down, to(x, y - 60, 200), up]);
+                await until(() => document.body.dataset.verdict, 'the release');
+            },
+            solve,
+            async () => {
+                await solve();
+                await click('#undo');
+                await run(() => {
+                    const input = document.getElementById('epsilon');
+                    input.value = 0;
+                    input.oninput();
+                });
+                await solve();
+            },
+            async () => { await tick('fairness', 0.5); await solve(); },
+            async () => { await solve(); await tick('compression', 1); await solve(); },
+            async () => { await solve(); await click('#verdict'); await tick('fixedBoundary', 0); await solve(); },
+        ];
+        await open('#lesson=1');
+        check(await run(() => lessons.length) === things.length, 'lessons without a test');
+        for (let k = 0; k < things.length; ++k) {
+            const read = await run(k => [lessons[k].example, lessons[k].section, lesson.number, lesson.done], k);
+            check(read[2] === k && !read[3], `lesson ${k + 1} is not open, or done before it began`, read);
+            check(fs.existsSync(path.join(root, 'examples', read[0])) && header.includes(`   ${read[1]} `),
+                `lesson ${k + 1} leads to`, read);
+            await run(() => {
+                document.body.dataset.verdict = '';
+                document.getElementById('slow').checked = false;
+                document.getElementById('slow').onchange();
+            });
+            await things[k]();
+            await until(() => lesson.done && document.getElementById('lesson-notice').textContent,
+                `what lesson ${k + 1} notices`);
+            if (k === 0) await shoot('lesson');
+            await run(() => { document.body.dataset.mesh = ''; });
+            await click('#lesson-next');
+            if (k + 1 < things.length) await until(() => document.body.dataset.mesh, 'the next lesson');
+            await idle();
+        }
+        check(await run(() => document.getElementById('lesson').hidden), 'the lessons do not end');
+    },
+    /* Slowly there is a picture of each iteration, and progress is told. */
+    async slowly() {
+        await open('#mesh=Roof&planar=1&fixedCorners=1');
+        await run(() => {
+            document.getElementById('slow').click();
+            window.bars = new Set();
+            new MutationObserver(() => bars.add(document.getElementById('course-bars').children.length))
+                .observe(document.getElementById('course-bars'), {childList: true});
+        });
+        await solve();
+        const [bars, iterations] = await run(() => [[...window.bars].filter(n => n > 0), lesson.history.length]);
+        check(iterations > 3 && bars.length === iterations, `of ${iterations} iterations these are seen:`, bars);
+    },
+    /* Light and dark, by the system and by the switch; each of the colours is seen; the link carries them. */
+    async colours() {
+        await cdp('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: 'dark'}]});
+        await open('#mesh=Carpet&planar=1&gliding=1&colour=lengths');
+        const corner = picture => Math.max(...picture.at(4, 200)), dark = await shoot('dark');
+        check(corner(dark) < 60 && (await count(dark)).mesh > 0.1, 'in the dark the corner is', dark.at(4, 200));
+        await click('#theme');
+        const light = await shoot('lengths');
+        check(corner(light) > 200, 'by the switch the corner is', light.at(4, 200));
+        await cdp('Emulation.setEmulatedMedia', {features: []});
+        check(await run(() => document.getElementById('colour').value) === 'lengths',
+            'the link does not carry the colours');
+        const said = [], changed = [];
+        for (const which of ['planarity', 'bends', 'forces', 'lengths']) {
+            await run(which => {
+                const select = document.getElementById('colour');
+                select.value = which;
+                select.onchange();
+            }, which);
+            await until(which => drawing.telling === which &&
+                    new URLSearchParams(location.hash.slice(1)).get('colour') ===
+                        (which === 'planarity' ? null : which),
+                'colours', which);
+            await idle();
+            const picture = await count(await shoot(`colours_${which}`));
+            const sphere = await run(() => {
+                const canvas = document.getElementById('gauss');
+                return !canvas.hidden && canvas.getContext('2d').getImageData(0, 0, 392, 240).data.some(x => x > 0);
+            });
+            check(sphere === (which === 'bends'), `${which}: the Gauss image is seen: ${sphere}`);
+            changed.push(JSON.stringify(picture)),
+                said.push(await run(
+                    () => document.getElementById('scale').textContent + document.getElementById('bars').innerHTML));
+        }
+        check(new Set(changed).size === 4 && new Set(said).size === 4, 'some colours look alike:', changed, said);
+    },
+    /* A cage is subdivided, a curve is filled. */
+    async cages_and_curves() {
+        await open('#mesh=Cage&planar=1&fairness=0.1');
+        await run(() => { document.body.dataset.mesh = ''; });
+        await click('#subdivide');
+        await until(() => document.body.dataset.mesh === 'cage_fine.obj', 'the subdivided cage');
+        check(await run(() => mesh.faces) === 32, 'the subdivided cage has', await run(() => mesh.faces));
+        const ring = path.join(work, 'ring.obj');
+        fs.writeFileSync(ring,
+            Array.from({length: 24}, (_, k) => `v ${Math.cos(k * Math.PI / 12)} ${Math.sin(k * Math.PI / 12)} 0\n`)
+                    .join('') +
+                `l ${Array.from({length: 24}, (_, k) => k + 1).join(' ')} 1\n`);
+        await upload(ring);
+        await until(() => document.body.dataset.mesh === 'ring.obj', 'a filled curve');
+        check(await run(() => mesh.faces) > 20 && /^f /m.test(await run(() => new TextDecoder().decode(opened.text))),
+            'the curve was not filled');
     },
     async what_is_no_mesh_is_refused() {
         await choose('Roof');
@@ -256,24 +410,42 @@ const tests = {
         fs.rmSync(noise);
         check(/hold/.test(await solve()), 'after noise it does not solve');
     },
+    /* The work breaks off in the middle of a solve: a new instance goes on from where it began, with the same fixed
+       vertices. */
     async after_a_trap_it_goes_on() {
         await choose('Roof');
         await solve();
+        await run(() => { select(157); document.getElementById('fix').click(); });
+        await until(() => pins.length === 1, 'a fixed vertex');
         const before = await saved();
-        await run(() => { document.body.dataset.error = ''; send({does: 'nothing of the kind'}); });
+        await run(() => {
+            document.body.dataset.error = '';
+            document.getElementById('slow').click();
+            setRule('fixedCorners', 1);
+            send({does: 'solve', iterations: 200});
+            send({does: 'nothing of the kind'});
+        });
         await until(() => document.body.dataset.error, 'the sentence about the trap');
+        await idle();
         check(await saved() === before, 'after a trap the mesh is another one');
+        check(await run(() => pins.length === 1), 'after a trap the vertex is free');
+        await run(() => document.getElementById('slow').click());
         check(/hold/.test(await solve()), 'after a trap it does not solve');
     },
     async keys_are_enough() {
         await choose('Roof');
         const until_focus = async wanted => {
             for (let k = 0; k < 80; ++k) {
-                if (await run(wanted => document.activeElement.id === wanted || document.activeElement.textContent === wanted, wanted)) return;
+                if (await run(wanted => document.activeElement.id === wanted ||
+                            document.activeElement.dataset.name === wanted,
+                        wanted))
+                    return;
                 await press('\uE004');
             }
             check(false, `the tab key does not reach ${wanted}`);
         };
+        await until_focus('choose');
+        await press('\uE007');
         await until_focus('Flat sheet');
         await run(() => { document.body.dataset.mesh = ''; });
         await press('\uE007');
@@ -284,26 +456,51 @@ const tests = {
         await idle();
         const before = await saved();
         await until_focus('canvas');
+        await run(() => { document.body.dataset.verdict = ''; });
         await press(...'n'.repeat(40), '\uE00E');
-        await until(() => !document.getElementById('undo').disabled && document.body.dataset.activity === 'none', 'a nudge');
+        await until(() => document.body.dataset.verdict, 'the end of a nudge');
         await idle();
         const nudged = await saved();
         check(apart(parse(before), parse(nudged)) > 0.05, 'a nudge moves nothing');
-        await call('POST', '/actions', {actions: [{type: 'key', id: 'keys', actions: [{type: 'keyDown', value: '\uE009'},
-            {type: 'keyDown', value: 'z'}, {type: 'keyUp', value: 'z'}, {type: 'keyUp', value: '\uE009'}]}]});
+        await call('POST', '/actions', {
+            actions: [{
+                type: 'key',
+                id: 'keys',
+                actions: [
+                    {type: 'keyDown', value: '\uE009'}, {type: 'keyDown', value: 'z'}, {type: 'keyUp', value: 'z'},
+                    {type: 'keyUp', value: '\uE009'}
+                ]
+            }]
+        });
         await idle();
         check(await saved() === before, 'control Z does not undo the nudge');
-        const nameless = await run(() => [...document.querySelectorAll('button, input, canvas, pre')].filter(e =>
-            !(e.getAttribute('aria-label') || e.textContent.trim() || e.labels?.[0]?.textContent.trim() || e.id === 'code')).map(e => e.outerHTML));
+        const nameless = await run(
+            () => [...document.querySelectorAll('button, input, select, canvas, pre, dialog, aside, section[id]')]
+                      .filter(e => !(e.ariaHidden === 'true' || e.getAttribute('aria-labelledby') ||
+                                  e.getAttribute('aria-label') || e.textContent.trim() ||
+                                  e.labels?.[0]?.textContent.trim() || e.id === 'code'))
+                      .map(e => e.outerHTML));
         check(nameless.length === 0, 'without a name:', nameless);
     },
     async the_same_elsewhere() {
-        for (const [name, hash] of [['roof', '#mesh=Roof&planar=1&gliding=1&fairness=0.1'],
-            ['roof', '#mesh=Roof&planar=1&fixedCorners=1&closeness=0.05'], ['shell', '#mesh=Shell&equilibrium=1&compression=1&fixedBoundary=1']]) {
+        const tcc = spawnSync('tcc', ['-v']).status === 0; // compiles the header in no time
+        const declared =
+            path.join(work, 'declared'); // the header without its implementation, which others have checked
+        fs.mkdirSync(declared, {recursive: true});
+        fs.writeFileSync(path.join(declared, 'guidedproj.h'),
+            `#undef GUIDEDPROJ_IMPLEMENTATION\n#include "${path.resolve(root)}/guidedproj.h"\n`);
+        /* Wishes that are linearised anew in each iteration make more of rounding: there two compilers differ by 1e-3,
+         * too. */
+        const exact = 1e-9, alike = 0.02;
+        for (const [name, hash, near] of [['roof', '#mesh=Roof&planar=1&gliding=1&fairness=0.1', exact],
+            ['roof', '#mesh=Roof&planar=1&fixedCorners=1&closeness=0.05&longest=1.4&epsilon=0.001', exact],
+            ['shell', '#mesh=Shell&equilibrium=1&compression=1&fixedBoundary=1&forceFairness=0.1', exact],
+            ['house', '#mesh=House&planar=1&volume=1.3&fairness=0.12&closeness=0.1', exact],
+            ['filled_curve', '#mesh=Filled%20curve&planar=1&gliding=1&fairness=0.3&reference=0.1&gauss=0.1', alike]]) {
             await open(hash);
             const folder = fs.mkdtempSync(path.join(work, 'same-'));
             fs.writeFileSync(path.join(folder, `${name}.obj`), await run(() => new TextDecoder().decode(opened.text)));
-            if (hash.includes('closeness')) { // a vertex is fixed by hand, too
+            if (hash.includes('closeness=0.05')) { // a vertex is fixed by hand, too
                 await run(() => { select(157); document.getElementById('fix').click(); });
                 await until(() => pins.length === 1, 'a fixed vertex');
             }
@@ -318,45 +515,137 @@ const tests = {
             const here = parse(await saved());
             check(/hold/.test(verdict), `${hash}: ${verdict}`);
             fs.writeFileSync(path.join(folder, 'solve.c'), program);
-            const built = spawnSync('cc', ['-O1', '-Wall', '-Wextra', `-I${root}`, 'solve.c', '-lm', '-o', 'solve'], {cwd: folder, encoding: 'utf8'});
-            check(built.status === 0 && !built.stderr, `${hash}: as C:`, built.stderr);
+            const read = spawnSync('cc', ['-fsyntax-only', '-Wall', '-Wextra', `-I${declared}`, 'solve.c'],
+                {cwd: folder, encoding: 'utf8'});
+            check(read.status === 0 && !read.stderr, `${hash}: as C:`, read.stderr);
+            const built = spawnSync(
+                tcc ? 'tcc' : 'cc', [`-I${root}`, 'solve.c', '-lm', '-o', 'solve'], {cwd: folder, encoding: 'utf8'});
+            check(built.status === 0, `${hash}: as C:`, built.stderr);
             const ran = spawnSync('./solve', {cwd: folder, encoding: 'utf8'});
             check(ran.status === 0, `${hash}: the program ends with`, ran.status, ran.stdout);
-            check(/\d+ iterations/.exec(ran.stdout)[0] === /\d+ iterations/.exec(verdict)[0], `${hash}: here ${verdict}, as C ${ran.stdout}`);
-            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= 1e-9 * meanEdge(here), `${hash}: as C another mesh comes out`);
+            check(/\d+ iterations/.exec(ran.stdout)[0] === /\d+ iterations/.exec(verdict)[0],
+                `${hash}: here ${verdict}, as C ${ran.stdout}`);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here),
+                `${hash}: as C another mesh comes out`);
             fs.rmSync(path.join(folder, 'solved.obj'));
-            const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
+            const told = spawnSync(
+                'bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
             check(told.status === 0, `${hash}: the command ends with`, told.status, told.stderr, command);
-            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= 1e-9 * meanEdge(here), `${hash}: as a command another mesh comes out`);
+            check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here),
+                `${hash}: as a command another mesh comes out`);
         }
     },
+    /* 390 px wide, by fingers: one turns the view, two zoom it, one on a vertex drags it. */
     async on_a_phone() {
         await cdp('Emulation.setDeviceMetricsOverride', {width: 390, height: 844, deviceScaleFactor: 2, mobile: true});
         await open();
         await solve();
-        const wide = await run(() => document.documentElement.scrollWidth);
-        check(wide <= 390, `at 390 px the page is ${wide} wide`);
+        const wide = () => run(() => document.documentElement.scrollWidth);
+        check(await wide() <= 390, `at 390 px the page is ${await wide()} wide`);
         const picture = await count(await shoot('phone'));
         check(picture.mesh > 0.08, `on a phone the mesh covers ${picture.mesh}`);
+        const view = () => run(() => [drawing.view.yaw, drawing.view.distance]), first = await view();
+        await pointer('touch', [to(60, 80), down, to(120, 90, 60), up]);
+        const turned = await view();
+        check(Math.abs(turned[0] - first[0]) > 0.1 && turned[1] === first[1], 'one finger turns the view from', first,
+            'to', turned);
+        await pointer('touch', [to(180, 60), down, to(140, 60, 60), up], [to(220, 60), down, to(300, 60, 60), up]);
+        check((await view())[1] < 0.8 * turned[1], 'two fingers zoom from', turned, 'to', await view());
+        await run(() => { document.body.dataset.verdict = ''; fit(); });
+        const before = parse(await saved()), [x, y] = await seenAt(10 * 21 + 10);
+        await pointer('touch', [to(x, y), down, to(x + 5, y - 25, 100), up]);
+        await until(() => document.body.dataset.verdict, 'the end of a drag by a finger');
+        check(apart(before, parse(await saved())) > meanEdge(before) / 4, 'a finger drags nothing');
+        await run(() => openLesson(0));
+        await until(() => document.body.dataset.mesh === 'flat_sheet.obj', 'a lesson');
+        await shoot('phone_lesson');
+        check(await wide() <= 390, `with a lesson the page is ${await wide()} wide`);
         await cdp('Emulation.clearDeviceMetricsOverride', {});
     },
-    /* Ten thousand vertices: stop comes through, and so do pictures while it releases. Times are told, not judged. */
+    /* Ten thousand vertices: the page's thread is never busy for long, stop comes through within an iteration, and
+       pictures arrive while it releases. Times are printed, and judged by ten times what they should be. */
     async large_meshes() {
         await open('#mesh=Large%20roof&planar=1&fixedCorners=1');
-        await run(() => { document.body.dataset.frames = 0; });
+        await run(() => {
+            window.longest = window.own = 0;
+            new PerformanceObserver(list => {
+                for (const e of list.getEntries()) longest = Math.max(longest, e.duration);
+            }).observe({type: 'longtask'});
+            const measured = work => (...all) => {
+                const begun = performance.now();
+                work(...all);
+                own = Math.max(own, performance.now() - begun);
+            };
+            worker.onmessage = measured(worker.onmessage);
+            drawing.draw = measured(drawing.draw.bind(drawing));
+            document.body.dataset.frames = 0;
+        });
         await click('#solve');
-        await until(() => document.body.dataset.frames > 0, 'a picture of the large roof');
-        const frames = await run(() => Number(document.body.dataset.frames)), begun = Date.now();
-        if (await run(() => document.body.dataset.activity === 'solve')) await run(() => document.getElementById('stop').click());
+        await until(() => lesson.history.length > 0, 'an iteration of the large roof');
+        const [on, seen] = await run(() => [document.body.dataset.activity === 'solve', lesson.history.length]),
+                   begun = Date.now();
+        if (on) await run(() => document.getElementById('stop').click());
         await idle();
-        console.log(`large roof: stopped within ${Date.now() - begun} ms, after ${frames} pictures`);
+        const stopped = Date.now() - begun, taken = await run(() => lesson.history.length),
+              frames = await run(() => Number(document.body.dataset.frames));
+        check(!on || taken <= seen + 2, `stop was asked for after ${seen} iterations, and it took ${taken}`);
+        await solve();
+        await run(() => {
+            document.body.dataset.verdict = '', window.released = 0;
+            const seeing = answers.frame;
+            answers.frame = state => {
+                released += state.activity === 'release' && state.buffer !== null;
+                seeing(state);
+            };
+            const vertex = 42 * 119 + 59, p = drawing.place(vertex);
+            send({does: 'grab', vertex, reach: reach()});
+            for (let k = 1; k < 8; ++k) send({does: 'move', to: [p[0], p[1], p[2] + 0.2 * k * mesh.edge]});
+            send({does: 'release'});
+        });
+        await until(() => document.body.dataset.verdict, 'the end of the release');
+        const [released, longest, own, grab] =
+            await run(() => [window.released, window.longest, window.own, times.grab.slice(-1)[0]]);
+        console.log(
+            `V = 10,115: longest task of the page ${longest.toFixed(0)} ms with what the browser draws by software, ` +
+            `${own.toFixed(0)} ms of its own (100 wanted); stop ${stopped} ms after iteration ${seen}, ` +
+            `${frames} pictures of the first solve, ${released} of the release; grab ${grab.toFixed(0)} ms`);
+        check(released > 1, `${released} pictures of the release arrive`);
+        check(own <= 1000, `a task of the page's thread took ${own} ms`);
         await shoot('large');
     },
+    async moves_and_grabs() {
+        await run(
+            () => open('grid.obj',
+                new TextEncoder().encode(grid(40, 41, (s, t) => [10 * s, 10 * t, Math.sin(6 * s) * Math.cos(5 * t)])),
+                {planar: 1, fixedCorners: 1}));
+        await until(() => document.body.dataset.mesh === 'grid.obj', 'a mesh of 1,722 vertices');
+        await solve();
+        const [grab, move] = await wait(async () => {
+            const rest = () => new Promise(resolve => setTimeout(resolve, 20)), vertex = 20 * 42 + 20;
+            times.move.length = times.grab.length = 0;
+            for (let k = 0; k < 5; ++k) {
+                const p = drawing.place(vertex);
+                send({does: 'grab', vertex, reach: reach()});
+                for (let n = 1; n <= 12; ++n) {
+                    send({does: 'move', to: [p[0], p[1], p[2] + 0.02 * n * mesh.edge]});
+                    await rest();
+                }
+                send({does: 'stop'});
+            }
+            while (times.grab.length < 5) await rest();
+            return [times.grab, times.move];
+        });
+        console.log(`V = 1,722: a move ${median(move).toFixed(2)} ms (2 wanted), a grab ${
+            median(grab).toFixed(0)} ms (150 wanted), medians of ${move.length} and ${grab.length}`);
+        check(move.length > 20 && median(move) <= 20 && median(grab) <= 1500, 'moves and grabs take', median(move),
+            median(grab));
+    },
     async memory_does_not_grow() {
+        await cdp('Emulation.setDeviceMetricsOverride', {width: 400, height: 300, deviceScaleFactor: 1, mobile: false});
         await open();
         const sizes = await wait(async () => {
             const sizes = [];
-            for (let k = 0; k < 500; ++k) {
+            for (let k = 0; k < 200; ++k) {
                 memorySize = 0;
                 choose('Tower');
                 while (!memorySize) await new Promise(resolve => setTimeout(resolve, 4));
@@ -365,7 +654,8 @@ const tests = {
             return sizes;
         });
         /* The allocator may need one page more (64 KiB) until its pieces fit; what is lost would go on. */
-        check(sizes[499] === sizes[249] && sizes[499] <= sizes[10] + 65536, `memory grows: ${sizes[10]}, ${sizes[249]}, ${sizes[499]}`);
+        check(sizes[199] === sizes[99] && sizes[199] <= sizes[10] + 65536,
+            `memory grows: ${sizes[10]}, ${sizes[99]}, ${sizes[199]}`);
     },
 };
 
@@ -381,20 +671,34 @@ async function main() {
     process.on('exit', () => driver.kill());
     for (let k = 0; k < 200; ++k) if (await fetch(`${hub}/status`).then(() => true, () => sleep(50))) break;
     base = hub;
-    const {sessionId} = await call('POST', '/session', {capabilities: {alwaysMatch: {
-        browserName: 'chrome',
-        'goog:loggingPrefs': {browser: 'ALL', performance: 'ALL'},
-        'goog:chromeOptions': {binary: process.env.CHROMIUM, args: ['headless=new', 'no-sandbox', 'disable-gpu', 'use-angle=swiftshader',
-            'enable-unsafe-swiftshader', 'disable-dev-shm-usage', 'window-size=1280,860', `user-data-dir=${work}/profile`]},
-        timeouts: {script: 120000},
-    }}});
+    const {sessionId} = await call('POST', '/session', {
+        capabilities: {
+            alwaysMatch: {
+                browserName: 'chrome',
+                'goog:loggingPrefs': {browser: 'ALL', performance: 'ALL'},
+                'goog:chromeOptions': {
+                    binary: process.env.CHROMIUM,
+                    args: [
+                        'headless=new', 'no-sandbox', 'disable-gpu', 'use-angle=swiftshader',
+                        'enable-unsafe-swiftshader', 'disable-dev-shm-usage', 'window-size=1280,860',
+                        `user-data-dir=${work}/profile`
+                    ]
+                },
+                timeouts: {script: 120000},
+            }
+        }
+    });
     base = `${hub}/session/${sessionId}`;
     const only = process.env.GPROJT_ONLY || '';
     try {
         for (const [name, test] of Object.entries(tests)) {
             if (only && !name.includes(only) && name !== 'it_opens_from_disk') continue;
+            const begun = Date.now();
             await test().catch(error => check(false, `${name}: ${error.message}`));
-            const noise = (await log('browser')).filter(e => e.level === 'SEVERE' || (e.level === 'WARNING' && !/GL Driver Message|GPU stall/.test(e.message)));
+            if (process.env.GPROJT_TIMES) console.log(`${name}: ${Date.now() - begun} ms`);
+            const noise = (await log('browser'))
+                              .filter(e => e.level === 'SEVERE' ||
+                                      (e.level === 'WARNING' && !/GL Driver Message|GPU stall/.test(e.message)));
             check(noise.length === 0, `${name}: the console says`, noise.map(e => e.message));
         }
     } finally {

@@ -1,9 +1,9 @@
 """bundle.py - puts the page's parts into one HTML file: bundle.py page.html page.wasm OUT
 
 In page.html, <!-- css NAME --> and <!-- js NAME --> become the files' texts, <!-- worker NAME --> a script that is not run,
-and <!-- wasm --> the module, gzipped, in base64. roof.obj comes in as the constant roofText.
+and <!-- wasm --> the module, gzipped, in base64.
 """
-import base64, gzip, json, re, sys
+import base64, gzip, re, sys
 
 page, module, out = sys.argv[1:]
 
@@ -13,8 +13,6 @@ def part(match):
     if kind == "wasm":
         packed = gzip.compress(open(module, "rb").read(), 9, mtime=0)
         return f'<script type="text/plain" id="wasm">{base64.b64encode(packed).decode()}</script>'
-    if kind == "roof":
-        return f'<script>const roofText = {json.dumps(open("../../examples/roof.obj").read())};</script>'
     text = open(name, encoding="utf-8").read().replace("</script", "<\\/script")
     return {
         "css": f"<style>\n{text}</style>",
@@ -23,6 +21,6 @@ def part(match):
     }[kind]
 
 
-text = re.sub(r"<!-- (css|js|worker|wasm|roof)(?: (\S+))? -->", part, open(page, encoding="utf-8").read())
+text = re.sub(r"<!-- (css|js|worker|wasm)(?: (\S+))? -->", part, open(page, encoding="utf-8").read())
 open(out, "w", encoding="utf-8").write(text)
 print(f"{out}: {len(text.encode()) / 1000:.0f} KB")

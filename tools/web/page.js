@@ -4,51 +4,86 @@
 
 const $ = id => document.getElementById(id);
 
-/* The rules in the order of `rule` in page.c: what the page calls them, how the command line and C do. `value` is the weight
-   where a slider gives it. */
+/* The rules in the order of `rule` in page.c: what the page calls them, how the command line and C do. `most`: a slider
+   gives the weight, or, with `factor`, a factor; wishes have `wish`. */
 const rules = [
     {key: 'planar', label: 'Panels are flat', command: '--planar', c: 'gproj_add_planarity(form, 1)'},
-    {key: 'circular', label: 'Panels have a circumcircle', command: '--circular', c: 'gproj_add_circularity(form, 1)', needs: 'planar'},
-    {key: 'conical', label: 'Nodes are conical', command: '--conical', c: 'gproj_add_conicality(form, 1)', needs: 'planar'},
+    {key: 'circular', label: 'Panels have a circumcircle', command: '--circular', needs: 'planar',
+        c: 'gproj_add_circularity(form, 1)'},
+    {key: 'conical', label: 'Nodes are conical', command: '--conical', needs: 'planar',
+        c: 'gproj_add_conicality(form, 1)'},
     {key: 'equalLengths', label: 'Edges are equally long', command: '--equal-lengths',
         c: 'gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1)'},
     {key: 'equilibrium', label: 'Forces balance the weight', command: '--equilibrium --area-load 1',
         c: 'gproj_add_equilibrium(form, &loads, &supports, 1)'},
-    {key: 'compression', label: 'Compression only', command: '--compressive', needs: 'equilibrium', excludes: ['tension'],
-        c: 'gproj_add_compression(form, mesh->edge_count, NULL, 1)'},
-    {key: 'tension', label: 'Tension only', command: '--tensile', needs: 'equilibrium', excludes: ['compression'],
-        c: 'gproj_add_tension(form, mesh->edge_count, NULL, 1)'},
-    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary', c: 'gproj_add_fixed_boundary(form, 1)',
-        excludes: ['gliding', 'fixedCorners']},
-    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners', c: 'gproj_add_fixed_corners(form, 1)',
-        excludes: ['fixedBoundary', 'gliding']},
-    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary', c: 'gproj_add_gliding_boundary(form, 1)',
-        excludes: ['fixedBoundary', 'fixedCorners']},
+    {key: 'compression', label: 'Compression only', command: '--compressive', needs: 'equilibrium',
+        excludes: ['tension'], c: 'gproj_add_compression(form, mesh->edge_count, NULL, 1)'},
+    {key: 'tension', label: 'Tension only', command: '--tensile', needs: 'equilibrium',
+        excludes: ['compression'], c: 'gproj_add_tension(form, mesh->edge_count, NULL, 1)'},
+    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary',
+        excludes: ['gliding', 'fixedCorners'], c: 'gproj_add_fixed_boundary(form, 1)'},
+    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners',
+        excludes: ['fixedBoundary', 'gliding'], c: 'gproj_add_fixed_corners(form, 1)'},
+    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary',
+        excludes: ['fixedBoundary', 'fixedCorners'], c: 'gproj_add_gliding_boundary(form, 1)'},
     {key: 'lifting', label: 'Vertices move in height only', command: '--lifting', c: 'gproj_add_lifting(form, 1)'},
+    {key: 'orthogonal', label: 'Right angles at the boundary', command: '--orthogonal-boundary',
+        c: 'gproj_add_orthogonal_boundary(form, 1)'},
+    {key: 'volume', label: 'Volume', most: 2, step: 0.05, factor: true, command: '--volume',
+        c: 'gproj_add_volume(form, FACTOR * gproj_volume(mesh), 1)'},
+    {key: 'longest', label: 'Longest edge', most: 2.5, step: 0.05, factor: true, command: '--edge-length', c:
+        'gproj_add_length_bounds(form, mesh->edge_count, NULL, 0, FACTOR * gproj_mesh_mean_edge_length(mesh), 1)'},
     {key: 'fixed'},
-    {key: 'fairness', label: 'Fair lines', most: 0.5, command: '--fairness', c: 'gproj_add_fairness'},
-    {key: 'closeness', label: 'Near the start', most: 0.5, command: '--closeness', c: 'gproj_add_closeness'},
-    {key: 'tangential', label: 'Even panels', most: 0.5, command: '--tangential', c: 'gproj_add_tangential_fairness'},
-    {key: 'equalAreas', label: 'Equal areas', most: 0.5, command: '--equal-areas', c: 'gproj_add_equal_areas'},
+    {key: 'fairness', label: 'Fair lines', most: 0.5, wish: '--fairness ', c: 'gproj_add_fairness(form, 1)'},
+    {key: 'closeness', label: 'Near the start', most: 0.5, wish: '--closeness ', c: 'gproj_add_closeness(form, 1)'},
+    {key: 'reference', label: 'Near its surface', most: 0.5, wish: '--reference FILE=',
+        c: 'gproj_add_reference(form, surface, 1)'},
+    {key: 'tangential', label: 'Even panels', most: 0.5, wish: '--tangential ',
+        c: 'gproj_add_tangential_fairness(form, 1)'},
+    {key: 'gauss', label: 'Calm normals', most: 0.5, wish: '--gauss ', needs: 'planar',
+        c: 'gproj_add_gauss_fairness(form, 1)'},
+    {key: 'equalAreas', label: 'Equal areas', most: 0.5, wish: '--equal-areas=', c: 'gproj_add_equal_areas(form, 1)'},
+    {key: 'parallelograms', label: 'Parallelograms', most: 2, step: 0.05, wish: '--parallelograms=',
+        c: 'gproj_add_parallelograms(form, 1)'},
+    {key: 'forceFairness', label: 'Even forces', most: 0.5, wish: '--force-fairness=', needs: 'equilibrium',
+        c: 'gproj_add_force_fairness(form, 1)'},
 ];
 const index = Object.fromEntries(rules.map((r, k) => [r.key, k]));
-const CONVERGED = 0, FAILED = 5;
+const CONVERGED = 0;
+
+/* What the colours tell, in the order of `tale` in page.c; `low` and `high` are the ends of the ramp. */
+const colours = [
+    {key: 'planarity', label: 'Planarity of panels', low: 'flat', high: '1 % of an edge'},
+    {key: 'forces', label: 'Forces in edges', low: 'tension', high: 'compression'},
+    {key: 'bends', label: 'Gauss image: angles', low: '0°', high: '30° and more'},
+    {key: 'lengths', label: 'Lengths: utilisation', low: '50 %', high: '100 % of the longest'},
+];
+const epsilons = [0, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]; // 0: it follows the residual
 
 const weights = new Array(rules.length).fill(0);
 let drawing = null, worker = null, item = gallery[0].name, activity = 'starting';
 let opened = {name: '', text: ''}; // the mesh as it was opened
-let mesh = null, marks = null, pins = [], selected = -1, drag = null, named = null, saving = null;
+let mesh = null, marks = null, pins = [], selected = -1, hovered = -1, drag = null, saving = null;
+let named = null, marked = null; // what the verdict names, and what of it is marked
 let dirty = true, unseen = false; // a picture is to be drawn; the mesh has not been seen yet
+let pictured = true, linked = true; // the small picture of it and the link to it are there
+const lesson = {number: -1, memory: {}, done: false, history: [], event: null};
+const times = {grab: [], move: []}; // of the last ones, in milliseconds of the worker
 
 const send = (message, transfer = []) => worker.postMessage(message, transfer);
 
 /* -- words -- */
 
+/* `place`: what the verdict names, as worker.js sends it. */
 function say(text, mood, place = null) {
+    $('sentence').ariaLive = mood === 'busy' ? 'off' : 'polite'; // numbers that run are not to be read aloud
     $('sentence').textContent = text;
     $('verdict').dataset.mood = mood;
     $('verdict').disabled = !place;
-    named = place;
+    if (drawing && named !== place) {
+        named = place;
+        mark(null);
+    }
 }
 const capital = text => text.charAt(0).toUpperCase() + text.slice(1) + (/[.!?]$/.test(text) ? '' : '.');
 
@@ -60,7 +95,15 @@ function showState(state) {
     $('undo').disabled = !state.undo;
     $('redo').disabled = !state.redo;
     if (busy && !state.iterations) say('Setting up.', 'busy');
-    else if (busy) say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${state.residual.toExponential(1)}.`, 'busy');
+    else if (busy)
+        say(`${activity === 'solve' ? 'Solving' : 'Releasing'}: iteration ${state.iterations}, residual ${
+                state.residual.toExponential(1)}.`,
+            'busy');
+    showCourse(activity === 'drag' ? [] : state.history, busy);
+    if (state.took) {
+        times[state.took.what].push(state.took.ms);
+        if (times[state.took.what].length > 400) times[state.took.what].shift();
+    }
     if (activity === 'drag') {
         const held = state.held ? ' The vertex stays behind: what must hold lets it go no farther.' : '';
         say(`Dragging: what must hold is off by ${state.residual.toExponential(1)} mean edges.${held}`, 'busy');
@@ -68,29 +111,74 @@ function showState(state) {
     document.body.dataset.residual = state.residual;
 }
 
+/* One bar for each iteration, up to the last 40: its height is the number of digits that hold. */
+function showCourse(history, busy) {
+    const digits = history.map(r => Math.max(0, Math.min(16, -Math.log10(Math.max(r, 1e-16)))));
+    $('course').hidden = history.length === 0;
+    $('progress').hidden = !busy;
+    lesson.history = history;
+    if (!history.length) return;
+    const first = digits[0], best = Math.max(...digits);
+    $('progress').value = (best - first) / Math.max(1, 13 - first);
+    $('course-bars').innerHTML = digits.slice(-40).map(d => `<i style="height:${4 + 6 * d}%"></i>`).join('');
+    $('course-scale').textContent = `digits that hold: ${Math.round(digits[digits.length - 1])}`;
+    $('course').setAttribute(
+        'aria-label', `${history.length} iterations, residual ${history[history.length - 1].toExponential(0)}`);
+}
+
 /* -- frames -- */
 
 function paint() {
-    if (dirty) {
+    if (!linked) writeLink();
+    if (dirty && !drawing.busy) {
         dirty = false;
         drawing.draw();
+        if (drawing.telling === 'bends' && mesh) showGauss();
+    } else if (!pictured && mesh) {
+        pictured = true;
+        thumbnail($('chosen'), new TextDecoder().decode(opened.text));
     }
     requestAnimationFrame(paint);
 }
 
 /* Bars over the ramp: how many panels, or edges, have which colour. */
 function showLegend() {
-    const byForce = drawing.byForce, count = 22, bars = new Array(count).fill(0);
-    const values = byForce ? drawing.forces : drawing.planarity;
-    for (const value of values) {
-        const t = byForce ? (value + 1) / 2 : (Math.log10(Math.max(value, 1e-9)) + 4) / 2;
-        bars[Math.max(0, Math.min(count - 1, Math.floor(t * count)))]++;
-    }
+    const told = colours.find(c => c.key === drawing.telling), count = 24, bars = new Array(count).fill(0);
+    const ofFaces = told.key === 'planarity' || told.key === 'bends',
+          part = {forces: [0.5, 0.5], lengths: [2, -1]}[told.key] || [1, 0];
+    for (const value of ofFaces ? drawing.values : drawing.forces)
+        bars[Math.max(0, Math.min(count - 1, Math.floor((part[0] * value + part[1]) * count)))]++;
     const most = Math.max(1, ...bars);
     $('bars').innerHTML = bars.map(n => `<i style="height:${n ? 4 + 96 * Math.sqrt(n / most) : 0}%"></i>`).join('');
-    $('legend').classList.toggle('forces', byForce);
-    $('scale').innerHTML = byForce ? '<span>tension</span><span>compression</span>'
-        : '<span>flat</span><span>1 % of an edge</span>';
+    $('legend').classList.toggle('forces', told.key === 'forces');
+    const high = told.key === 'lengths' && weights[index.longest] ? '100 % of the allowed' : told.high;
+    $('scale').innerHTML = `<span>${told.low}</span><span>${high}</span>`;
+}
+
+/* The Gauss image, seen as the mesh is: the panels' normals as points of a sphere, those behind it paler. */
+function showGauss() {
+    const canvas = $('gauss'), context = canvas.getContext('2d'), {corners} = mesh, at = drawing.places;
+    const {width, height} = canvas, radius = height / 2 - 6, normals = new Float64Array(3 * mesh.faces);
+    for (let k = 0; k < corners.length; k += 6) {
+        const [a, b, c] = [4 * corners[k], 4 * corners[k + 2], 4 * corners[k + 4]], n = 3 * corners[k + 1];
+        const u = [0, 1, 2].map(i => at[b + i] - at[a + i]), v = [0, 1, 2].map(i => at[c + i] - at[a + i]);
+        for (let i = 0; i < 3; ++i) normals[n + i] += u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+    }
+    const {right, up, back} = drawing.axes(), style = getComputedStyle(document.documentElement);
+    context.clearRect(0, 0, width, height);
+    context.strokeStyle = style.getPropertyValue('--hover');
+    context.lineWidth = 2;
+    context.beginPath();
+    context.arc(width / 2, height / 2, radius, 0, 2 * Math.PI);
+    context.stroke();
+    context.fillStyle = style.getPropertyValue('--accent');
+    for (let f = 0; f < 3 * mesh.faces; f += 3) {
+        const n = [normals[f], normals[f + 1], normals[f + 2]], scale = radius / (Math.hypot(...n) || 1);
+        const along = axis => scale * (n[0] * axis[0] + n[1] * axis[1] + n[2] * axis[2]);
+        context.globalAlpha = along(back) > 0 ? 0.8 : 0.25;
+        context.fillRect(width / 2 + along(right) - 1.5, height / 2 - along(up) - 1.5, 3, 3);
+    }
+    context.globalAlpha = 1;
 }
 
 function showPoints() {
@@ -98,11 +186,23 @@ function showPoints() {
     const points = [];
     for (let v = 0; v < mesh.vertices; ++v)
         if (marks[v] & 2 || weights[index.fixedBoundary] && marks[v] & 1 && mesh.vertices < 3000) points.push([v, 1]);
+    if (hovered >= 0) points.push([hovered, 4]);
     if (selected >= 0) points.push([selected, 2]);
+    if (marked && marked[3] < 2) // a vertex, or the ends of an edge
+        for (const v of marked[3] ? mesh.ends.subarray(2 * marked[4], 2 * marked[4] + 2) : [marked[4]])
+            points.push([v, 3]);
     drawing.setPoints(points);
     $('fix').disabled = selected < 0;
+    $('free').disabled = pins.length === 0;
     $('fix').textContent = selected >= 0 && marks[selected] & 2 ? 'Free vertex' : 'Fix vertex';
     dirty = true;
+}
+
+function hover(vertex) {
+    $('canvas').classList.toggle('handle', vertex >= 0);
+    if (vertex === hovered) return;
+    hovered = vertex;
+    showPoints();
 }
 
 function select(vertex) {
@@ -114,17 +214,22 @@ const answers = {
     mesh(message) {
         mesh = message;
         memorySize = message.memory;
-        selected = -1;
-        weights[index.fixed] = 0;
+        selected = hovered = -1;
         drawing.setMesh(mesh);
         unseen = true;
-        $('counts').textContent = `${opened.name}: ${mesh.vertices} vertices, ${mesh.faces} panels, ${mesh.edges} edges`;
+        if (mesh.text) opened.text = mesh.text;
+        $('name').textContent = item || opened.name;
+        $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels`;
+        $('counts').title = `${mesh.edges} edges`;
+        pictured = false;
+        showCourse([], false);
         say('Nothing has been solved yet.', '');
         document.body.dataset.mesh = opened.name;
     },
     marks(message) {
         marks = message.marks;
         pins = message.pins;
+        weights[index.fixed] = pins.length ? 1 : 0;
         showPoints();
     },
     frame(state) {
@@ -135,15 +240,20 @@ const answers = {
             send({does: 'back', buffer: state.buffer}, [state.buffer]);
             document.body.dataset.frames = Number(document.body.dataset.frames || 0) + 1;
             dirty = true;
-            showLegend();
+            if (colours[state.tell].key === drawing.telling) showLegend();
         }
         showState(state);
+        if (lesson.event && state.buffer && activity === 'none') { // the picture that the verdict is about is there
+            happened(lesson.event);
+            lesson.event = null;
+        }
         if (drag && drag.waiting) drag.waiting = false, follow();
     },
     verdict(message) {
         const good = message.outcome === CONVERGED && !message.spoiled;
         say(capital(message.sentence), good ? 'good' : 'bad', message.named);
         document.body.dataset.verdict = message.sentence;
+        lesson.event = {what: 'verdict', good, after: message.after, iterations: message.iterations};
     },
     told(message) { say(message.sentence, ''); },
     error(message) {
@@ -162,13 +272,13 @@ const answers = {
 let memorySize = 0; // of the worker's instance, in bytes
 let pending = null; // what is being opened; it becomes `opened` when it is there
 
-function open(name, bytes, preset = null) {
+/* more: {corners, levels, lift, fix}, see worker.js. */
+function open(name, bytes, preset = null, more = {}) {
     const text = bytes.slice();
     pending = {name, text};
     if (preset) setWeights(preset);
-    send({does: 'open', bytes: bytes.buffer, name, settings: weights.map((w, k) => [k, w])}, [bytes.buffer]);
+    send({does: 'open', bytes: bytes.buffer, name, settings: weights.map((w, k) => [k, w]), ...more}, [bytes.buffer]);
 }
-const openText = (name, text, preset) => open(name, new TextEncoder().encode(text), preset);
 
 async function openFile(file) {
     if (!file) return;
@@ -177,17 +287,114 @@ async function openFile(file) {
     open(file.name, new Uint8Array(await file.arrayBuffer()));
 }
 
-function choose(name) {
-    const chosen = gallery.find(g => g.name === name) || gallery[0];
+/* The points of an OBJ text, and its polygons by numbers from 0, or its first curve. */
+function parse(text) {
+    const points = [], faces = [];
+    for (const line of text.split('\n')) {
+        if (line.startsWith('v ')) points.push(line.slice(2).trim().split(/\s+/).map(Number));
+        if (/^[fl] /.test(line)) faces.push(line.slice(2).trim().split(/\s+/).map(w => parseInt(w, 10) - 1));
+    }
+    return {points, faces};
+}
+
+/* Opens an item of the gallery, with its rules or others. */
+function choose(name, preset = null) {
+    const chosen = gallery.find(g => g.name === name) || gallery[0], text = chosen.make(),
+          {corners, levels, lift} = chosen;
+    const fix = chosen.fix ? parse(text).points.flatMap((p, v) => chosen.fix(v, p) ? [v] : []) : [];
     item = chosen.name;
     setColour(chosen.colour || 'planarity');
-    openText(chosen.name.toLowerCase().replace(/ /g, '_') + '.obj', chosen.make(), chosen.rules);
+    open(chosen.name.toLowerCase().replace(/ /g, '_') + '.obj', new TextEncoder().encode(text), preset || chosen.rules,
+        {corners, levels, lift, fix});
+}
+
+async function subdivide() {
+    const bytes = await writeMesh();
+    if (mesh.faces > 20000) return say('That would be more than a page can show.', 'bad');
+    item = '';
+    open(opened.name.replace(/(_fine)*\.\w+$/, '') + '_fine.obj', bytes, null, {levels: 1});
 }
 
 function showItem() {
-    for (const button of $('gallery').children) button.setAttribute('aria-pressed', String(button.textContent === item));
+    for (const button of document.querySelectorAll('#gallery button'))
+        button.setAttribute('aria-pressed', String(button.dataset.name === item));
     const chosen = gallery.find(g => g.name === item);
-    $('hint').textContent = chosen ? chosen.hint : '';
+    $('hint').textContent = chosen && lesson.number < 0 ? chosen.hint : '';
+}
+
+/* -- small pictures: seen as the mesh is at first, painted from the back -- */
+
+function thumbnail(canvas, text) {
+    const {points, faces} = parse(text), context = canvas.getContext('2d'), {width, height} = canvas;
+    context.clearRect(0, 0, width, height);
+    if (!points.length || points.length > 30000) return;
+    const seen = points.map(
+        ([x, y, z]) => [0.867 * x + 0.498 * y, -0.239 * x + 0.416 * y - 0.878 * z, 0.437 * x - 0.761 * y + 0.479 * z]);
+    const range = k => [Math.min(...seen.map(p => p[k])), Math.max(...seen.map(p => p[k]))], [left, right] = range(0),
+          [top, bottom] = range(1);
+    const scale = Math.min(0.86 * width / (right - left || 1), 0.82 * height / (bottom - top || 1));
+    const at = p => [width / 2 + scale * (p[0] - (left + right) / 2), height / 2 + scale * (p[1] - (top + bottom) / 2)];
+    const tone = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+    const path = face => {
+        face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at(seen[v])));
+        context.closePath();
+    };
+    const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text),
+                 few = Math.sqrt(width * height / Math.max(1, faces.length));
+    const deep = face => face.reduce((sum, v) => sum + seen[v][2], 0) / face.length;
+    context.lineWidth = curve ? 2 : Math.min(1, few / 12);
+    context.strokeStyle = curve ? tone('--accent') : line;
+    context.fillStyle = fill;
+    if (faces.length > 3000) { // lines would cover it
+        context.fillStyle = tone('--bar');
+        context.beginPath();
+        faces.forEach(path);
+        return context.fill();
+    }
+    for (const [face] of faces.map(f => [f, deep(f)]).sort((a, b) => a[1] - b[1])) {
+        context.beginPath();
+        path(face);
+        if (!curve) context.fill();
+        context.stroke();
+    }
+}
+
+function makeShelf() {
+    let group = '';
+    for (const {name, figure, group: of} of gallery) {
+        if (of !== group) $('gallery').append(Object.assign(document.createElement('h3'), {textContent: group = of}));
+        const button = document.createElement('button'), canvas = document.createElement('canvas'),
+              text = document.createElement('span');
+        Object.assign(canvas, {width: 240, height: 180});
+        canvas.setAttribute('aria-hidden', 'true');
+        text.textContent = name;
+        button.dataset.name = name;
+        button.append(canvas, text);
+        if (figure)
+            button.append(Object.assign(document.createElement('small'),
+                {textContent: figure.includes('.') ? `§ ${figure}` : `Fig. ${figure}`}));
+        button.onclick = () => {
+            $('shelf').close();
+            closeLesson();
+            choose(name);
+        };
+        $('gallery').append(button);
+    }
+}
+
+function showShelf() {
+    $('shelf').showModal();
+    document.querySelector('#gallery [aria-pressed="true"]')?.focus();
+    paintShelf();
+}
+
+/* Paints what is not painted yet, one picture at a time. */
+function paintShelf() {
+    const button = [...document.querySelectorAll('#gallery button')].find(b => !b.dataset.painted);
+    if (!button || !$('shelf').open) return;
+    button.dataset.painted = 'yes';
+    thumbnail(button.querySelector('canvas'), gallery.find(g => g.name === button.dataset.name).make());
+    requestAnimationFrame(paintShelf);
 }
 
 function download(name, bytes) {
@@ -216,12 +423,37 @@ function setWeights(preset) {
 function showRules() {
     rules.forEach((r, k) => {
         if (!r.input) return;
-        if (r.most) r.input.value = weights[k], r.output.value = weights[k] ? weights[k].toFixed(2) : 'off';
+        if (r.most)
+            r.input.value = weights[k],
+            r.output.value = weights[k] ? `${r.factor ? '×' : ''}${weights[k].toFixed(2)}` : 'off';
         else r.input.checked = weights[k] > 0;
     });
-    const on = rules.filter((r, k) => r.label && weights[k]).map(r => `${r.key}=${weights[index[r.key]]}`).join('&');
-    const hash = `${item ? `mesh=${encodeURIComponent(item)}&` : ''}${on}`;
-    history.replaceState(null, '', '#' + hash);
+    showLink();
+}
+
+/* What the page shows, as the hash of its address: written with the next picture, because browsers do
+   not like it often. */
+function showLink() { linked = false; }
+function writeLink() {
+    linked = true;
+    const parts = rules.filter((r, k) => r.label && weights[k]).map(r => `${r.key}=${weights[index[r.key]]}`);
+    if (item) parts.unshift(`mesh=${encodeURIComponent(item)}`);
+    if (drawing.telling !== 'planarity') parts.push(`colour=${drawing.telling}`);
+    if (epsilon()) parts.push(`epsilon=${epsilon()}`);
+    if (lesson.number >= 0) parts.push(`lesson=${lesson.number + 1}`);
+    if (location.hash !== '#' + parts.join('&')) history.replaceState(null, '', '#' + parts.join('&'));
+}
+
+/* Opens what a hash says. */
+function follows(hash) {
+    const wanted = new URLSearchParams(hash.slice(1)), number = Number(wanted.get('lesson'));
+    setSteps(Number(wanted.get('epsilon')) || 0, false);
+    if (number >= 1 && number <= lessons.length) return openLesson(number - 1);
+    closeLesson();
+    const preset = {};
+    for (const [key, weight] of wanted) if (key in index) preset[key] = Math.max(0, Math.min(2.5, Number(weight) || 0));
+    choose(wanted.get('mesh'), wanted.get('mesh') ? preset : null);
+    if (colours.some(c => c.key === wanted.get('colour'))) setColour(wanted.get('colour'));
 }
 
 function setRule(key, weight) {
@@ -231,16 +463,103 @@ function setRule(key, weight) {
     if (weight) for (const other of rule.excludes || []) weights[index[other]] = 0;
     if (!weight) rules.forEach((r, k) => { if (r.needs === key) weights[k] = 0; });
     if (key === 'equilibrium') setColour(weight ? 'forces' : 'planarity');
+    if (key === 'longest' && weight) setColour('lengths');
     showRules();
     showPoints();
     send({does: 'set', settings: weights.map((w, k) => [k, w])});
 }
 
 function setColour(which) {
-    drawing.byForce = which === 'forces';
-    document.querySelector(`input[name=colour][value=${which}]`).checked = true;
-    if (mesh) showLegend();
+    drawing.telling = which;
+    $('colour').value = which;
+    $('gauss').hidden = which !== 'bends';
+    if (worker) send({does: 'tell', which: colours.findIndex(c => c.key === which)});
+    showLink();
+}
+
+const epsilon = () => epsilons[Number($('epsilon').value)];
+function setSteps(wanted, slow) {
+    $('epsilon').value = Math.max(0, epsilons.indexOf(wanted));
+    $('epsilon-value').value = epsilon() || 'auto';
+    $('slow').checked = slow;
+    send({does: 'steps', epsilon: epsilon(), slow});
+    showLink();
+}
+
+function setTheme(theme) {
+    document.documentElement.dataset.theme = theme;
+    $('theme').setAttribute('aria-pressed', String(theme === 'dark'));
+    for (const button of document.querySelectorAll('#gallery button')) delete button.dataset.painted;
+    if (!drawing) return;
+    drawing.readColours();
+    pictured = !mesh;
     dirty = true;
+}
+
+/* -- lessons -- */
+
+/* What a lesson may ask. */
+const standing = {
+    warped: () => drawing.telling === 'planarity' ? drawing.values.filter(v => v > 0.25).length : 0,
+    history: () => lesson.history,
+    epsilon,
+    weight: key => weights[index[key]],
+};
+
+function openLesson(number) {
+    const {
+        title,
+        text,
+        task,
+        mesh: name,
+        rules: preset,
+        colour,
+        reach = 5,
+        slow = false,
+        epsilon = 0,
+        example,
+        section
+    } = lessons[number];
+    Object.assign(lesson, {number, memory: {}, done: false, event: null});
+    $('lesson').hidden = false;
+    document.body.dataset.lesson = number + 1;
+    $('lesson').classList.remove('done');
+    $('lesson-number').textContent = `Lesson ${number + 1} of ${lessons.length}`;
+    $('lesson-title').textContent = title;
+    $('lesson-text').textContent = text;
+    $('lesson-try').textContent = task;
+    $('lesson-notice').textContent = '';
+    /* In the repository, where the page was made, the files are beside it. */
+    const beside = /\/tools\/web\/build\/[^/]*$/.test(location.pathname),
+          file = (path, words) => beside ? `<a href="../../../${path}" target="_blank">${words}</a>` : words;
+    $('lesson-links').innerHTML = `Read on: ${file(`examples/${example}`, `examples/${example}`)}; ${section} in ${
+        file('guidedproj.h', 'guidedproj.h')}`;
+    $('lesson-back').disabled = number === 0;
+    $('lesson-next').textContent = number + 1 < lessons.length ? 'Next' : 'Done';
+    $('reach').value = reach;
+    showReach();
+    setSteps(epsilon, slow);
+    choose(name, preset);
+    setColour(colour || 'planarity');
+}
+
+function closeLesson() {
+    if (lesson.number < 0) return;
+    lesson.number = -1;
+    $('lesson').hidden = true;
+    delete document.body.dataset.lesson;
+    setSteps(epsilon(), false);
+    showItem();
+}
+
+/* Tells the lesson that is open what has happened. */
+function happened(event) {
+    if (lesson.number < 0 || lesson.done) return;
+    const {done, notice} = lessons[lesson.number];
+    if (!done(event, lesson.memory, standing)) return;
+    lesson.done = true;
+    $('lesson').classList.add('done');
+    $('lesson-notice').textContent = notice(lesson.memory, standing);
 }
 
 /* -- actions -- */
@@ -252,11 +571,13 @@ function toggleFixed() {
     if (selected < 0) return;
     marks[selected] ^= 2;
     send({does: 'fix', vertex: selected, on: (marks[selected] & 2) !== 0});
-    weights[index.fixed] = marks.some(m => m & 2) ? 1 : 0;
-    send({does: 'set', settings: weights.map((w, k) => [k, w])});
     showPoints();
 }
+function freeAll() {
+    for (const [vertex] of pins) send({does: 'fix', vertex, on: false});
+}
 
+function showReach() { $('reach-value').value = Number($('reach').value) || 'off'; }
 const reach = () => Number($('reach').value) * mesh.edge;
 
 /* Sends the drag's target, one at a time: the next one when the frame of the last one is there. */
@@ -278,6 +599,9 @@ function nudge(dx, dy, dz) {
 
 /* -- the view -- */
 
+/* The width that a lesson takes of the canvas: the mesh is shown beside it. */
+const inset = () => $('lesson').hidden || innerWidth <= 760 ? 0 : $('lesson').offsetWidth;
+
 /* Shows the whole mesh: the view's axes stay, distance and target follow from where the vertices appear. */
 function fit() {
     const {view, canvas} = drawing, {right, up} = drawing.axes();
@@ -288,8 +612,8 @@ function fit() {
             const p = drawing.project(drawing.place(v), m);
             for (let k = 0; k < 2; ++k) low[k] = Math.min(low[k], p[k]), high[k] = Math.max(high[k], p[k]);
         }
-        const size = [canvas.clientWidth, canvas.clientHeight], scale = drawing.pixel(view.distance);
-        const off = [0, 1].map(k => scale * ((low[k] + high[k]) / 2 - size[k] / 2));
+        const size = [canvas.clientWidth - inset(), canvas.clientHeight], scale = drawing.pixel(view.distance);
+        const off = [0, 1].map(k => scale * ((low[k] + high[k]) / 2 - size[k] / 2 - (k ? 0 : inset())));
         view.target = view.target.map((t, k) => t + off[0] * right[k] - off[1] * up[k]);
         view.distance *= Math.max((high[0] - low[0]) / (0.84 * size[0]), (high[1] - low[1]) / (0.74 * size[1]), 0.1);
     }
@@ -313,13 +637,30 @@ function pan(dx, dy) {
     dirty = true;
 }
 
-/* Moves the view to a place, in a few pictures. */
-function fly(place, count = 18) {
-    const {view} = drawing, from = view.target.slice(), distance = view.distance, near = Math.min(distance, 2.2);
+/* Marks what a verdict has named: a face, or vertices. */
+function mark(place) {
+    marked = place;
+    drawing.marked = place && place[3] === 2 ? place[4] : -1;
+    showPoints();
+}
+
+/* Flies to what the verdict names, and marks it. */
+function showNamed() {
+    if (!named) return;
+    mark(named);
+    fly(named);
+    happened({what: 'flown'});
+}
+
+/* Moves the view to a place, in a few pictures, or in one where motion is not wanted. */
+function fly(place, count = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : 18) {
+    const {view} = drawing, {right} = drawing.axes(), from = view.target.slice(), distance = view.distance,
+          near = Math.min(distance, Math.max(0.3, 14 * mesh.edge));
+    const to = place.slice(0, 3).map((p, k) => p - drawing.pixel(near) * inset() / 2 * right[k]);
     let n = 0;
     const next = () => {
         const t = ++n / count, s = t * t * (3 - 2 * t);
-        view.target = from.map((f, k) => f + s * (place[k] - f));
+        view.target = from.map((f, k) => f + s * (to[k] - f));
         view.distance = distance + s * (near - distance);
         dirty = true;
         if (n < count) requestAnimationFrame(next);
@@ -348,18 +689,29 @@ function listenToPointers(canvas) {
         select(vertex);
         if (vertex < 0) return;
         const place = drawing.place(vertex), w = drawing.project(place)[2];
-        drag = {vertex, x, y, place, scale: drawing.pixel(w), axes: drawing.axes(), begun: false, waiting: false, target: null};
+        drag = {
+            vertex,
+            x,
+            y,
+            place,
+            scale: drawing.pixel(w),
+            axes: drawing.axes(),
+            begun: false,
+            waiting: false,
+            target: null
+        };
     });
     canvas.addEventListener('pointermove', event => {
         const [x, y] = at(event), before = pointers.get(event.pointerId);
         if (!before) {
-            canvas.classList.toggle('handle', drawing.pick(x, y, false) >= 0);
+            hover(drawing.pick(x, y, false));
             return;
         }
         const dx = x - before.x, dy = y - before.y;
         if (pointers.size === 2) {
             const [other] = [...pointers].filter(([id]) => id !== event.pointerId).map(([, p]) => p);
-            zoom(Math.hypot(before.x - other.x, before.y - other.y) / Math.max(1, Math.hypot(x - other.x, y - other.y)));
+            zoom(
+                Math.hypot(before.x - other.x, before.y - other.y) / Math.max(1, Math.hypot(x - other.x, y - other.y)));
             pan(dx / 2, dy / 2);
         } else if (drag) {
             pull(x, y, event.altKey);
@@ -376,6 +728,11 @@ function listenToPointers(canvas) {
     };
     canvas.addEventListener('pointerup', up);
     canvas.addEventListener('pointercancel', up);
+    canvas.addEventListener('pointerleave', () => hover(-1));
+    canvas.addEventListener('dblclick', event => {
+        select(drawing.pick(...at(event), false));
+        toggleFixed();
+    });
     canvas.addEventListener('contextmenu', event => event.preventDefault());
     canvas.addEventListener('wheel', event => {
         event.preventDefault();
@@ -424,8 +781,10 @@ const keys = {
 };
 
 function listenToKeys() {
+    document.addEventListener('pointerdown', () => { document.body.dataset.by = 'pointer'; });
     document.addEventListener('keydown', event => {
-        if ($('dialog').open) return;
+        document.body.dataset.by = 'keys';
+        if ($('dialog').open || $('shelf').open) return;
         if (event.key === 'Escape') {
             if (activity === 'none') select(-1);
             else stop();
@@ -446,53 +805,77 @@ function listenToKeys() {
 const fixedList = () => pins.filter(pin => !pin[4]).map(pin => pin[0]);
 const movedList = () => pins.filter(pin => pin[4]); // fixed, but elsewhere than in the file
 const isOn = key => weights[index[key]] > 0;
+const isClosed = () => !marks.some(m => m & 1);
 
 /* A file's name as a word of the shell, and as a string in C. */
 const shellWord = name => /^[\w.+-]+$/.test(name) && name[0] !== '-' ? name : `'./${name.replace(/'/g, "'\\''")}'`;
 const cString = name => `"${name.replace(/["\\?]/g, '\\$&')}"`;
 
 function asCommand() {
-    const parts = ['tools/guidedproj', shellWord(opened.name), '-o solved.obj'];
+    const parts = ['tools/guidedproj', shellWord(opened.name), '-o solved.obj'], pinned = fixedList();
     rules.forEach((r, k) => {
-        if (weights[k] && r.command) parts.push(r.most ? `${r.command}${r.key === 'equalAreas' ? '=' : ' '}${weights[k]}` : r.command);
+        const w = weights[k];
+        if (!w || !r.label) return;
+        if (r.wish) parts.push(r.wish.replace('FILE', shellWord(opened.name)) + w);
+        else if (r.key === 'volume') parts.push(`--volume x${w}`);
+        else if (r.key === 'longest') parts.push(`--edge-length ,${w * mesh.meanEdge}`);
+        else parts.push(r.command);
     });
-    if (fixedList().length) parts.push(`--fix ${fixedList().join(',')}`);
+    if (isOn('equilibrium') && isClosed()) parts.push(`--supports ${pins.map(pin => pin[0]).join(',')}`);
+    if (pinned.length) parts.push(`--fix ${pinned.join(',')}`);
     for (const [vertex, x, y, z] of movedList()) parts.push(`--move ${vertex},${x},${y},${z}`);
+    if (epsilon()) parts.push(`--epsilon ${epsilon()}`);
     return parts.join(' ') + '\n';
 }
 
+/* Lines of numbers as a C array. */
+function cArray(type, name, numbers) {
+    const lines = [''];
+    for (const word of numbers.map(String)) {
+        if (lines[lines.length - 1].length + word.length > 96) lines.push('');
+        lines[lines.length - 1] += `${lines[lines.length - 1] ? ' ' : ''}${word},`;
+    }
+    return `    static const ${type} ${name}[] = {\n        ${lines.join('\n        ')}\n    };`;
+}
+
 function asProgram() {
-    const fixed = fixedList(), moved = movedList(), lines = [];
+    const fixed = fixedList(), moved = movedList(), lines = [], supports = isOn('equilibrium'),
+          surface = isOn('reference');
     const out = (...more) => lines.push(...more);
     out('/* Build and run: cc -O2 -I. solve.c -lm -o solve && ./solve */', '#define GUIDEDPROJ_IMPLEMENTATION',
         '#include "guidedproj.h"', '#include <stdio.h>', '#include <stdlib.h>', '', 'int main(void) {',
         '    gproj_error error;', `    gproj_mesh *mesh = gproj_mesh_load(${cString(opened.name)}, NULL, &error);`,
         '    if (!mesh) return puts(error.message), 1;', '    gproj_form *form = gproj_form_create(mesh, NULL);',
-        '    gproj_solve_options options = {.smooth = true};');
-    if (isOn('equilibrium')) {
+        `    gproj_solve_options options = {.smooth = true${epsilon() ? `, .epsilon = ${epsilon()}` : ''}};`);
+    if (surface) out('    gproj_surface *surface = gproj_surface_create(mesh, NULL, &error);');
+    if (supports && isClosed()) {
+        out('    /* Panels weigh 1 per area; fixed vertices carry. */', '    gproj_loads loads = {.area_load = 1};',
+            cArray('int32_t', 'support', pins.map(pin => pin[0])),
+            `    gproj_supports supports = {${pins.length}, support, NULL};`);
+    } else if (supports) {
         out('    /* Panels weigh 1 per area; the boundary carries. */', '    gproj_loads loads = {.area_load = 1};',
             '    int32_t *boundary = malloc(sizeof *boundary * (size_t)mesh->vertex_count);', '    int32_t count = 0;',
             '    for (int32_t v = 0; v < mesh->vertex_count; ++v)',
             '        if (gproj_mesh_is_boundary_vertex(mesh, v)) boundary[count++] = v;',
             '    gproj_supports supports = {count, boundary, NULL};');
     }
-    if (fixed.length) out(`    static const int32_t fixed[] = {${fixed.join(', ')}};`);
-    if (moved.length) {
-        out(`    static const int32_t moved[] = {${moved.map(pin => pin[0]).join(', ')}};`,
-            `    static const double places[] = {${moved.map(pin => pin.slice(1, 4).join(', ')).join(', ')}};`);
-    }
+    if (fixed.length) out(cArray('int32_t', 'fixed', fixed));
+    if (moved.length)
+        out(cArray('int32_t', 'moved', moved.map(pin => pin[0])),
+            cArray('double', 'places', moved.flatMap(pin => pin.slice(1, 4))));
     rules.forEach((r, k) => {
         if (!weights[k] || !r.c) return;
-        if (!r.most) out(`    ${r.c};`);
-        else out(`    gproj_set_schedule(form, ${r.c}(form, 1),`,
-            `                       gproj_fade(${weights[k]}, ${isOn('equilibrium') ? 9 : 6}));`);
+        if (r.wish) out(`    gproj_set_schedule(form, ${r.c}, gproj_fade(${weights[k]}, ${supports ? 9 : 6}));`);
+        else out(`    ${r.c.replace('FACTOR', weights[k])};`);
     });
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
     out('    gproj_result result = gproj_solve(form, 200, &options);', '    puts(result.message);',
         '    if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "solved.obj", &error);',
-        '    gproj_form_destroy(form);', '    gproj_mesh_destroy(mesh);');
-    if (isOn('equilibrium')) out('    free(boundary);');
+        '    gproj_form_destroy(form);');
+    if (surface) out('    gproj_surface_destroy(surface);');
+    out('    gproj_mesh_destroy(mesh);');
+    if (supports && !isClosed()) out('    free(boundary);');
     out('    return result.outcome != GPROJ_CONVERGED;', '}');
     return lines.join('\n') + '\n';
 }
@@ -501,32 +884,35 @@ function show(title, note, text) {
     $('dialog-title').textContent = title;
     $('dialog-note').textContent = note;
     $('code').textContent = text;
+    $('save-opened').hidden = text.startsWith('file:') || text.startsWith('http');
     $('dialog').showModal();
 }
 
 /* Copies the text, or, where the browser does not let it, selects it. */
 function copy() {
-    const told = words => { $('copy').textContent = words; setTimeout(() => { $('copy').textContent = 'Copy'; }, 1500); };
+    const told = words => {
+        $('copy').textContent = words;
+        setTimeout(() => { $('copy').textContent = 'Copy'; }, 1500);
+    };
     getSelection().selectAllChildren($('code'));
-    (navigator.clipboard?.writeText($('code').textContent) ?? Promise.reject()).then(() => told('Copied'), () => told('Selected'));
+    (navigator.clipboard?.writeText($('code').textContent) ?? Promise.reject())
+        .then(() => told('Copied'), () => told('Selected'));
 }
 
 /* -- beginning -- */
 
 function makeControls() {
-    for (const {name} of gallery) {
-        const button = document.createElement('button');
-        button.textContent = name;
-        button.onclick = () => choose(name);
-        $('gallery').append(button);
-    }
+    makeShelf();
+    for (const {key, label} of colours)
+        $('colour').append(Object.assign(document.createElement('option'), {value: key, textContent: label}));
     for (const rule of rules) {
         if (!rule.label) continue;
-        const label = document.createElement('label'), input = document.createElement('input'), text = document.createElement('span');
+        const label = document.createElement('label'), input = document.createElement('input'),
+              text = document.createElement('span');
         text.textContent = rule.label;
         rule.input = input;
         if (rule.most) {
-            Object.assign(input, {type: 'range', min: 0, max: rule.most, step: 0.01, value: 0});
+            Object.assign(input, {type: 'range', min: 0, max: rule.most, step: rule.step || 0.01, value: 0});
             rule.output = document.createElement('output');
             label.className = 'slider';
             label.append(text, input, rule.output);
@@ -538,23 +924,41 @@ function makeControls() {
             input.onchange = () => setRule(rule.key, input.checked ? 1 : 0);
         }
         input.id = 'rule-' + rule.key;
-        $(rule.most ? 'wishes' : 'holds').append(label);
+        $(rule.wish ? 'wishes' : 'holds').append(label);
     }
     $('solve').onclick = solve;
     $('stop').onclick = stop;
     $('undo').onclick = () => send({does: 'undo'});
     $('redo').onclick = () => send({does: 'redo'});
-    $('verdict').onclick = () => named && fly(named);
+    $('verdict').onclick = showNamed;
     $('open').onclick = () => $('file').click();
     $('file').onchange = event => { openFile(event.target.files[0]); event.target.value = ''; };
     $('save').onclick = async () => download(opened.name.replace(/\.\w+$/, '') + '_solved.obj', await writeMesh());
     $('fix').onclick = toggleFixed;
     $('fit').onclick = fit;
-    $('reach').oninput = () => { $('reach-value').value = Number($('reach').value) ? `${$('reach').value}` : 'off'; };
-    $('reach').oninput();
-    for (const input of document.querySelectorAll('input[name=colour]')) input.onchange = () => setColour(input.value);
-    $('as-c').onclick = () => show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
-    $('as-command').onclick = () => show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
+    $('free').onclick = freeAll;
+    $('subdivide').onclick = subdivide;
+    $('reach').oninput = showReach;
+    showReach();
+    $('colour').onchange = () => setColour($('colour').value);
+    $('epsilon').oninput = $('slow').onchange = () => setSteps(epsilon(), $('slow').checked);
+    $('choose').onclick = showShelf;
+    $('shelf-close').onclick = () => $('shelf').close();
+    $('theme').onclick = () => setTheme(document.documentElement.dataset.theme === 'dark' ? 'light' : 'dark');
+    $('lessons').onclick = () => openLesson(Math.max(0, lesson.number));
+    $('lesson-close').onclick = closeLesson;
+    $('lesson-back').onclick = () => openLesson(lesson.number - 1);
+    $('lesson-again').onclick = () => openLesson(lesson.number);
+    $('lesson-next').onclick = () => lesson.number + 1 < lessons.length ? openLesson(lesson.number + 1) : closeLesson();
+    $('as-link').onclick = () => writeLink() ??
+        show('As a link',
+            item ? 'Opens this page with this mesh and these settings; what was pulled is not in it.'
+                 : 'Opens this page with these settings; a mesh of your own is not in it.',
+            location.href);
+    $('as-c').onclick = () =>
+        show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
+    $('as-command').onclick = () =>
+        show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
     $('copy').onclick = copy;
     $('save-opened').onclick = () => download(opened.name, opened.text);
     $('close').onclick = () => $('dialog').close();
@@ -580,6 +984,9 @@ async function unpack() {
 }
 
 async function begin() {
+    const darkness = matchMedia('(prefers-color-scheme: dark)');
+    setTheme(darkness.matches ? 'dark' : 'light');
+    darkness.onchange = () => setTheme(darkness.matches ? 'dark' : 'light');
     makeControls();
     drawing = new Drawing($('canvas'));
     worker = new Worker(URL.createObjectURL(new Blob([$('worker').textContent], {type: 'text/javascript'})));
@@ -594,14 +1001,8 @@ async function begin() {
     listenToKeys();
     listenToDrops($('stage'));
     new ResizeObserver(() => { dirty = true; }).observe($('canvas'));
-    const wanted = new URLSearchParams(location.hash.slice(1));
-    choose(wanted.get('mesh'));
-    if (wanted.get('mesh')) {
-        const preset = {};
-        for (const [key, weight] of wanted) if (key in index) preset[key] = Math.max(0, Math.min(1, Number(weight) || 0));
-        setWeights(preset);
-        send({does: 'set', settings: weights.map((w, k) => [k, w])});
-    }
+    addEventListener('hashchange', () => follows(location.hash));
+    follows(location.hash);
     paint();
 }
 begin().catch(error => say(capital(error.message), 'bad'));

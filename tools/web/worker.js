@@ -1,15 +1,17 @@
-/* worker.js - one worker with one instance of page.c. The page sends messages {does: name, ...}; answers are {is: name, ...}.
-   Frames travel in buffers that the page gives back. A solve runs in pieces of a few milliseconds, so that messages get
-   through; what is undone lies here as snapshots. */
+/* worker.js - one worker with one instance of page.c. The page sends messages {does: name, ...}; answers are {is: name,
+   ...}. Frames travel in buffers that the page gives back. A solve runs in pieces of a few milliseconds, so that
+   messages get through; what is undone lies here as snapshots. */
 'use strict';
 
 const REFUSED = 0, ON_THE_WAY = 2; // see page_move
-const FRAME_SECONDS = 0.012, UNDO_BYTES = 1 << 28;
+const FRAME_SECONDS = 0.012, SLOW_MS = 260, UNDO_BYTES = 1 << 28;
 let module = null, wasm = null;
 let opened = null;               // {text, settings, snapshot, fixed}: what a new instance goes on from
+const chosen = {tell: 0, epsilon: 0, slow: false};
 let activity = 'none';           // 'none', 'drag', 'release' or 'solve'
 let target = null, armed = false; // of a drag; is a turn of work under way?
 let frameSize = 0, spare = [];   // of a frame in bytes; frame buffers that are at home
+let took = null;                 // {what, ms} of the last grab or move
 let undo = [], redo = [];
 const channel = new MessageChannel(), decoder = new TextDecoder();
 
@@ -41,8 +43,10 @@ function postFrame() {
     const state = {
         is: 'frame', activity, undo: undo.length, redo: redo.length, outcome: wasm.page_outcome(),
         iterations: wasm.page_iterations(), residual: wasm.page_residual(), spoiled: wasm.page_spoiled(),
-        held: activity === 'drag' && wasm.page_held() !== 0, buffer: null,
+        held: activity === 'drag' && wasm.page_held() !== 0, buffer: null, tell: chosen.tell, took,
+        history: Array.from(new Float64Array(wasm.memory.buffer, wasm.page_history(), wasm.page_steps())),
     };
+    took = null;
     if (spare.length > 0 && wasm.page_frame()) {
         state.buffer = spare.pop();
         new Uint8Array(state.buffer).set(bytes(wasm.page_block(0), frameSize));
@@ -58,28 +62,49 @@ function setFrames(size) {
     spare = [new ArrayBuffer(size), new ArrayBuffer(size)];
 }
 
-function postVerdict() {
-    const named = wasm.page_named() ? Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0), 3)) : null;
-    postMessage({is: 'verdict', sentence: sentence(), outcome: wasm.page_outcome(), spoiled: wasm.page_spoiled(), named});
+function postVerdict(after) {
+    const named = wasm.page_named() ? Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0), 5)) : null;
+    postMessage({is: 'verdict', after, sentence: sentence(), outcome: wasm.page_outcome(), spoiled: wasm.page_spoiled(),
+        iterations: wasm.page_iterations(), named});
 }
 
-function postMesh(name) {
+/* `text`: the mesh as OBJ where that is not what was sent, because a curve was filled or a cage subdivided. */
+function postMesh(name, text) {
     const vertices = wasm.page_vertices(), faces = wasm.page_faces(), edges = wasm.page_edges();
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
     const corners = new Uint32Array(wasm.memory.buffer.slice(at, at + 24 * triangles));
     const ends = new Uint32Array(wasm.memory.buffer.slice(at + 24 * triangles, at + 24 * triangles + 8 * edges));
     setFrames(4 * (4 * vertices + faces + edges));
-    postMessage({is: 'mesh', name, vertices, faces, edges, corners, ends, edge: wasm.page_reach(1),
-        memory: wasm.memory.buffer.byteLength});
+    postMessage({
+        is: 'mesh',
+        name,
+        vertices,
+        faces,
+        edges,
+        corners,
+        ends,
+        text,
+        edge: wasm.page_reach(1),
+        meanEdge: wasm.page_mean_edge(),
+        memory: wasm.memory.buffer.byteLength
+    });
     postMarks();
 }
 
 function postMarks() {
     if (!wasm.page_marks()) return;
     const marks = bytes(wasm.page_block(0), wasm.page_vertices()).slice(), count = wasm.page_pins();
-    const pins = Array.from({length: count}, (_, k) => Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0) + 40 * k, 5)));
+    const pins = Array.from(
+        {length: count}, (_, k) => Array.from(new Float64Array(wasm.memory.buffer, wasm.page_block(0) + 40 * k, 5)));
     postMessage({is: 'marks', marks, pins});
 }
+
+function written(off) {
+    const size = wasm.page_write(off);
+    return bytes(wasm.page_block(0), size).slice();
+}
+/* Has the text no faces, so that quads were made to fill it? */
+const isCurve = text => text.byteLength < 1 << 20 && !/^\s*(f |\S*OFF)/m.test(decoder.decode(text));
 
 /* -- undo -- */
 
@@ -131,19 +156,21 @@ function turn() {
     armed = false;
     if (activity === 'drag') {
         if (!target) return;
-        const moved = wasm.page_move(...target);
+        const begun = performance.now(), moved = wasm.page_move(...target);
+        took = {what: 'move', ms: performance.now() - begun};
         if (moved === REFUSED) postMessage({is: 'error', sentence: sentence()});
         if (moved === ON_THE_WAY) arm();
         else target = null;
         postFrame();
     } else if (activity === 'solve' || activity === 'release') {
-        const more = wasm.page_step(FRAME_SECONDS);
+        const more = wasm.page_step(chosen.slow ? 0 : FRAME_SECONDS), after = activity;
         if (!more) {
             settle();
-            postVerdict();
+            postVerdict(after);
         }
         postFrame();
-        if (more) arm();
+        if (more && chosen.slow) setTimeout(arm, SLOW_MS);
+        else if (more) arm();
     }
 }
 
@@ -152,25 +179,40 @@ const does = {
         module = new WebAssembly.Module(bytes);
         instantiate();
     },
-    open({bytes, name, settings}) {
-        if (!give(new Uint8Array(bytes))) return postMessage({is: 'error', sentence: 'there is not enough memory'});
-        if (!wasm.page_open(bytes.byteLength))
+    /* corners, levels, lift: see page_open; fix: the vertices that are fixed. */
+    open({bytes: text, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
+        if (!give(new Uint8Array(text))) return postMessage({is: 'error', sentence: 'there is not enough memory'});
+        if (!wasm.page_open(text.byteLength, corners, levels, lift))
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
-        opened = {text: bytes, settings: opened?.settings ?? [], fixed: new Set()};
+        const other = isCurve(text) || levels || lift ? written(false) : undefined;
+        if (other && give(other)) wasm.page_open(other.length, 0, 0, 0); // exactly as who saves it will open it
+        opened = {text: other ?? text, settings: opened?.settings ?? [], fixed: new Set(fix)};
         if (settings) does.set({settings});
+        for (const vertex of fix) wasm.page_fix(vertex, true);
         opened.snapshot = snapshot();
-        postMesh(name);
+        postMesh(name, other);
         postFrame();
     },
     set({settings}) {
         for (const [which, weight] of settings) wasm.page_set(which, weight);
         if (opened) opened.settings = settings;
     },
+    tell({which}) {
+        chosen.tell = which;
+        wasm.page_tell(which);
+        if (activity === 'none' && opened) postFrame();
+    },
+    steps({epsilon, slow}) {
+        Object.assign(chosen, {epsilon, slow});
+        wasm.page_epsilon(epsilon);
+    },
     fix({vertex, on}) {
         wasm.page_fix(vertex, on);
-        if (on) opened.fixed.add(vertex);
-        else opened.fixed.delete(vertex);
+        if (on)
+            opened.fixed.add(vertex);
+        else
+            opened.fixed.delete(vertex);
         postMarks();
     },
     solve({iterations}) {
@@ -188,12 +230,15 @@ const does = {
     grab({vertex, reach}) {
         finish();
         remember();
+        const begun = performance.now();
         if (!wasm.page_grab(vertex, reach)) {
             undo.pop();
             postMessage({is: 'error', sentence: sentence()});
             return postFrame();
         }
         activity = 'drag';
+        took = {what: 'grab', ms: performance.now() - begun};
+        postFrame();
     },
     move({to}) {
         if (activity !== 'drag') return;
@@ -214,14 +259,14 @@ const does = {
         if (drag) undo.pop();
         settle();
         postFrame();
-        postMessage({is: 'told', sentence: drag ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.'});
+        postMessage({
+            is: 'told',
+            sentence: drag ? 'The drag was taken back.' : 'Stopped: the mesh is as the last iteration left it.'
+        });
     },
     undo() { exchange(undo, redo); },
     redo() { exchange(redo, undo); },
-    write({off}) {
-        const size = wasm.page_write(off);
-        postMessage({is: 'text', off, bytes: bytes(wasm.page_block(0), size).slice()});
-    },
+    write({off}) { postMessage({is: 'text', off, bytes: written(off)}); },
     back({buffer}) {
         if (buffer.byteLength === frameSize) spare.push(buffer);
     },
@@ -234,7 +279,9 @@ function recover(error) {
     if (!opened) return;
     instantiate();
     does.set({settings: opened.settings});
-    if (!give(new Uint8Array(opened.text)) || !wasm.page_open(opened.text.byteLength)) return;
+    wasm.page_tell(chosen.tell);
+    wasm.page_epsilon(chosen.epsilon);
+    if (!give(new Uint8Array(opened.text)) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
     restore(opened.snapshot);
     for (const vertex of opened.fixed) wasm.page_fix(vertex, true);
     setFrames(frameSize);
