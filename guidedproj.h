@@ -1483,9 +1483,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
-   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, for 50
-     iterations or half of a smaller limit, in place of the guard: faces stay convex and upright where they were, and
-     edges keep a length. The rows come as they are needed, as the group "corners". If no step is found with them they
+   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, and edges
+     when they become shorter than 0.2 of their length, for 50 iterations or half of a smaller limit, in place of the
+     guard: faces stay convex and upright where they were. The rows come as they are needed, as the group "corners". If no step is found with them they
      are let go; gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
      most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
@@ -22825,48 +22825,55 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 }
 
 /* ============================================================================================================
-   >>corners   Faces keep their corners. Uses platform, memory, error, vector, stream, system, loop, mesh,
+   >>corners   Faces keep their corners and edges. Uses platform, memory, error, vector, stream, system, loop, mesh,
    measure, form, guard.
 
    Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular
    one may have lost an edge. So every corner of a face keeps a part of the area that it had
        m'((b - a) x (c - b)) >= part m0'((b0 - a0) x (c0 - b0))                                                      (1)
    with the vertices a, b, c, and m the face's normal at x (the variables of planar faces) or the normal m0 at the
-   beginning of the solve, which keeps the face from turning. Such faces are convex, without bow-ties, and all edges
-   have a length. Corners without such an area at the beginning are let go.
+   beginning of the solve, which keeps the face from turning. Such faces are convex and without bow-ties. An edge can
+   still be lost while its neighbours grow, as beside a fixed corner of a gliding boundary, so edges keep a part of
+   their length
+       |b - a|^2 >= part^2 |b0 - a0|^2                                                                               (2)
+   Corners and edges without a size at the beginning are let go.
 
-   A row asks for no more than its corner has when it is linearised, or a floor: corners may shrink as far as they must,
-   but slowly, and a wish for more does not hold up the constraints.
+   A row asks for no more than its corner or edge has when it is linearised, or a floor: they may shrink as far as they
+   must, but slowly, and a wish for more does not hold up the constraints.
 
-   Few corners come near to their bounds, so rows are added for those that a step would violate, and for those that are
-   near to it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next
-   solve. */
+   Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
+   it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
 
 static const double gproji_corner_weight = 0.3;
-static const double gproji_corner_wanted = 0.3;  /* part of its area that the row of a corner asks for, */
+static const double gproji_corner_wanted = 0.3;  /* part of its size that the row of a corner or edge asks for, */
 static const double gproji_corner_least = 0.2;   /* and that below which it gets one */
 static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
 static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
-static const double gproji_corner_none = 1e-3; /* of corners that are let go */
+static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
+static const double gproji_edge_floor = 0.15;  /* part of its length asked of an edge, */
+static const double gproji_edge_kept = 0.5;    /* and that which a step has to leave of a short one */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
     GPROJI_CORNER_TERMS = 18
 };
 
-/* Corner 2 h + k is the one behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1). */
+/* Item 2 h + k is the corner behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1); the
+   items behind all corners are the edges. */
 typedef struct gproji_corners {
     double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
+    double *length;  /* per edge, likewise */
     double *axis;    /* per face: the unit normal then */
-    int32_t *row;    /* per corner; -1: none */
-    uint8_t *marked; /* corners that are to act */
-    int32_t *corner; /* per row; has room for all corners */
-    int32_t rounds;  /* in this solve: how often corners were marked */
+    int32_t *row;    /* per item; -1: none */
+    uint8_t *marked; /* items that are to act */
+    int32_t *item;   /* per row; has room for all items */
+    int32_t edges;   /* the item of edge 0 */
+    int32_t items;
+    int32_t rounds; /* in this solve: how often items were marked */
 } gproji_corners;
 
 GPROJI_INTERNAL gproji_corners *gproji_corners_of(const gproji_part *part) { return (gproji_corners *)part->data; }
-
 
 /* The vectorial area of the parallelogram at the corner behind half-edge h: (b - a) x (c - b). */
 GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x, int32_t h, double out[3]) {
@@ -22889,34 +22896,59 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
+GPROJI_INTERNAL double gproji_edge_length(const gproj_mesh *mesh, const double *x, int32_t edge) {
+    return gproji_distance3(x + 3 * (size_t)mesh->origin[2 * edge], x + 3 * (size_t)mesh->origin[2 * edge + 1]);
+}
+
+/* Returns which part of an area the row of a corner asks for, and gives the terms their coefficients. */
+GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t corner,
+                                               gproj_term *term) {
+    const gproji_corners *guard = gproji_corners_of(part);
+    int32_t h = corner / 2, face = part->form->mesh->face[h], k, t;
+    bool upright = corner % 2 != 0;
+    double m[3], area[3], has;
+    gproji_corner_normal(part->form, x, x, face, m);
+    if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
+    gproji_corner_area(part->form->mesh, x, h, area);
+    has = gproji_dot3(area, m) / guard->size[h];
+    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_corner_terms */
+    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6)
+        for (k = 0; k < 3; ++k) {
+            term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
+            term[t + 2 * k + 1].a = -term[t + 2 * k].a;
+        }
+    return upright ? gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
+                   : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
+}
+
+/* The same for an edge: which part of the squared length. */
+GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const double *x, int32_t edge, gproj_term *term) {
+    double length = gproji_corners_of(part)->length[edge], asked;
+    int32_t k;
+    for (k = 0; k < 3; ++k) { /* in the order of gproji_edge_terms */
+        term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
+        term[3 * k + 2].a = -2 / (length * length);
+    }
+    asked = gproji_fmin(gproji_edge_length(part->form->mesh, x, edge) / length, gproji_corner_wanted);
+    asked = gproji_fmax(asked, gproji_edge_floor);
+    return asked * asked;
+}
+
 /* Linearises the rows that act, with the normals at x. */
 GPROJI_INTERNAL void gproji_linearise_corners(const gproji_part *part) {
     gproj_system *system = part->form->system;
-    int32_t group = part->group;
     const gproji_corners *guard = gproji_corners_of(part);
-    const gproji_group *g = gproji_group_at(system, group);
-    const gproj_mesh *mesh = part->form->mesh;
+    const gproji_group *g = gproji_group_at(system, part->group);
     const double *x = gproj_system_values(system);
-    int32_t r, k, t, count;
+    int32_t r, count;
     for (r = 0; r < g->row_count; ++r) {
-        gproj_term *term = gproji_row_terms(system, group, r, &count);
-        int32_t h = guard->corner[r] / 2, face = mesh->face[h];
-        bool upright = guard->corner[r] % 2 != 0;
-        double m[3], area[3], has, asked;
+        gproj_term *term = gproji_row_terms(system, part->group, r, &count);
+        int32_t item = guard->item[r];
+        double asked;
         if (!(g->row[r].weight > 0)) continue;
-        gproji_corner_normal(part->form, x, x, face, m);
-        if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
-        gproji_corner_area(mesh, x, h, area);
-        has = gproji_dot3(area, m) / guard->size[h];
-        asked = upright ? gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
-                        : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
-        gproji_place_row(system, group, r, g->row[r].weight, -asked);
-        /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
-        for (t = 0; t < count; t += 6)
-            for (k = 0; k < 3; ++k) {
-                term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
-                term[t + 2 * k + 1].a = -term[t + 2 * k].a;
-            }
+        asked = item < guard->edges ? gproji_linearise_corner(part, x, item, term)
+                                    : gproji_linearise_edge(part, x, item - guard->edges, term);
+        gproji_place_row(system, part->group, r, g->row[r].weight, -asked);
     }
 }
 
@@ -22926,13 +22958,10 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     gproji_linearise_corners((const gproji_part *)user);
 }
 
-/* The row of a corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x
-   (m_z), a_y b_z, - a_z b_y (m_x), ... It has no weight yet. Returns the number, -1 after an error. */
-GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
-    gproji_corners *guard = gproji_corners_of(part);
-    const gproj_mesh *mesh = part->form->mesh;
-    gproj_term term[GPROJI_CORNER_TERMS];
-    int32_t vertex[3], h = corner / 2, row, c, k, count = 0;
+/* The terms of a corner, without coefficients: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products
+   a_x b_y, - a_y b_x (m_z), a_y b_z, - a_z b_y (m_x), ... Returns their number. */
+GPROJI_INTERNAL int32_t gproji_corner_terms(const gproj_mesh *mesh, int32_t h, gproj_term *term) {
+    int32_t vertex[3], c, k, count = 0;
     for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
     for (c = 0; c < 3; ++c)
         for (k = 0; k < 3; ++k) {
@@ -22940,25 +22969,50 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t corner) {
             gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
             gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
         }
-    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, -gproji_corner_wanted,
-                                   mesh->face[corner / 2]);
+    return count;
+}
+
+/* The same for an edge: |b - a|^2 as a_x^2, b_x^2, - 2 a_x b_x, ... */
+GPROJI_INTERNAL int32_t gproji_edge_terms(const gproj_mesh *mesh, int32_t edge, gproj_term *term) {
+    int32_t a = 3 * mesh->origin[2 * edge], b = 3 * mesh->origin[2 * edge + 1], k, count = 0;
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[count++], a + k, a + k, 0);
+        gproji_set_term(&term[count++], b + k, b + k, 0);
+        gproji_set_term(&term[count++], a + k, b + k, 0);
+    }
+    return count;
+}
+
+/* Adds the row of an item, without a weight yet. Returns the number, -1 after an error. */
+GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
+    gproji_corners *guard = gproji_corners_of(part);
+    const gproj_mesh *mesh = part->form->mesh;
+    gproj_term term[GPROJI_CORNER_TERMS];
+    int32_t edge = item - guard->edges, h = edge < 0 ? item / 2 : mesh->face[2 * edge] < 0 ? 2 * edge + 1 : 2 * edge;
+    int32_t count = edge < 0 ? gproji_corner_terms(mesh, h, term) : gproji_edge_terms(mesh, edge, term);
+    int32_t row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, mesh->face[h]);
     if (row < 0) return -1;
-    guard->corner[row] = corner;
-    guard->row[corner] = row;
+    guard->item[row] = item;
+    guard->row[item] = row;
     return row;
 }
 
-/* Marks the corners that do not act and are within `margin` of their bounds at x, for gproji_wake_corners; at the first
-   one it stops if that is enough. Returns whether there was one. */
+/* Has an item a row that acts? */
+GPROJI_INTERNAL bool gproji_corner_acts_now(const gproji_part *part, int32_t item) {
+    int32_t row = gproji_corners_of(part)->row[item];
+    return row >= 0 && gproji_group_at(part->form->system, part->group)->row[row].weight > 0;
+}
+
+/* Marks the corners and edges that do not act and are within `margin` of their bounds at x, for gproji_wake_corners;
+   at the first one it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
                                          bool first) {
     const gproji_corners *guard = gproji_corners_of(part);
-    const gproji_row *rows = gproji_group_at(part->form->system, part->group)->row;
     const gproj_mesh *mesh = part->form->mesh;
-    int32_t f, h, c, k;
+    const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
+    int32_t f, h, c, k, e;
     bool found = false;
     for (f = 0; f < mesh->face_count; ++f) {
-        const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
         double m[2][3], area[3];
         gproji_corner_normal(part->form, x, before, f, m[0]);
         gproji_copy3(guard->axis + 3 * (size_t)f, m[1]);
@@ -22966,14 +23020,21 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
             if (!(guard->size[h] > 0)) continue;
             gproji_corner_area(mesh, x, h, area);
             for (k = 0; k < 2; ++k) {
-                int32_t row = guard->row[2 * h + k];
-                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || (row >= 0 && rows[row].weight > 0))
+                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || gproji_corner_acts_now(part, 2 * h + k))
                     continue;
                 if (first) return true;
                 guard->marked[2 * h + k] = 1;
                 found = true;
             }
         }
+    }
+    for (e = 0; e < mesh->edge_count; ++e) {
+        if (gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * guard->length[e] ||
+            gproji_corner_acts_now(part, guard->edges + e))
+            continue;
+        if (first) return true;
+        guard->marked[guard->edges + e] = 1;
+        found = true;
     }
     return found;
 }
@@ -23000,23 +23061,35 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     gproj_system *system = form->system;
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     gproji_corners *guard = gproji_corners_of(part);
-    const gproji_row *rows;
-    int32_t corner, row;
+    int32_t item, row;
     bool woken = false;
-    for (corner = 0; corner < 2 * form->mesh->halfedge_count; ++corner) {
-        if (!guard->marked[corner]) continue;
-        guard->marked[corner] = 0;
-        row = guard->row[corner] < 0 ? gproji_add_corner(part, corner) : guard->row[corner];
-        rows = gproji_group_at(system, part->group)->row;
-        if (row < 0 || rows[row].weight > 0) continue;
-        gproji_place_row(system, part->group, row, sqrt(guard->size[corner / 2]), rows[row].constant);
+    for (item = 0; item < guard->items; ++item) {
+        if (!guard->marked[item]) continue;
+        guard->marked[item] = 0;
+        row = guard->row[item] < 0 ? gproji_add_corner(part, item) : guard->row[item];
+        if (row < 0 || gproji_corner_acts_now(part, item)) continue;
+        gproji_place_row(system, part->group, row,
+                         item < guard->edges ? sqrt(guard->size[item / 2]) : guard->length[item - guard->edges], 0);
         woken = true;
     }
     if (woken) gproji_linearise_corners(part);
     return woken;
 }
 
-/* Has a corner become small, and lost most of the area in the step to x? */
+/* Has an edge become short, and lost most of the length in the step to x? */
+GPROJI_INTERNAL bool gproji_refuse_edges(const gproji_part *part, const double *before, const double *x) {
+    const gproj_mesh *mesh = part->form->mesh;
+    const double *length = gproji_corners_of(part)->length;
+    int32_t e;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double now = gproji_edge_length(mesh, x, e);
+        if (now < gproji_corner_least * length[e] && now < gproji_edge_kept * gproji_edge_length(mesh, before, e))
+            return true;
+    }
+    return false;
+}
+
+/* Has a corner become small, and lost most of the area in the step to x, or an edge the length? */
 GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, const double *x) {
     const gproj_form *form = (const gproj_form *)user;
     const gproji_part *part = gproji_acting_corners(form);
@@ -23037,10 +23110,10 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
             gproji_corner_normal(form, x, before, f, m);
         }
     }
-    return false;
+    return part && gproji_refuse_edges(part, before, x);
 }
 
-/* Passes the corners' rows during a solve, and their sizes and axes from when it began. */
+/* Passes the rows during a solve, and the sizes and axes from when it began. */
 GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     gproji_corners *guard = gproji_corners_of(part);
     gproj_system *s = part->form->system;
@@ -23048,17 +23121,18 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
     int32_t count = gproji_group_at(s, part->group)->row_count, r;
     if (!passing) return;
     gproji_pass_doubles(stream, guard->size, (size_t)mesh->halfedge_count);
+    gproji_pass_doubles(stream, guard->length, (size_t)mesh->edge_count);
     gproji_pass_doubles(stream, guard->axis, 3 * (size_t)mesh->face_count);
     gproji_pass_integer(stream, &guard->rounds, 0, INT32_MAX / 2);
     count = gproji_pass_integer(stream, &count, 0, count);
     gproji_rest_safeguard(stream, s, part->group);
     for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t corner = gproji_comes_in(stream) ? 0 : guard->corner[r];
-        corner = gproji_pass_integer(stream, &corner, 0, 2 * mesh->halfedge_count - 1);
-        if (stream->wrong || guard->row[corner] < 0)
-            gproji_spoil(stream, "a corner has no row");
+        int32_t item = gproji_comes_in(stream) ? 0 : guard->item[r];
+        item = gproji_pass_integer(stream, &item, 0, guard->items - 1);
+        if (stream->wrong || guard->row[item] < 0)
+            gproji_spoil(stream, "a corner or edge has no row");
         else
-            gproji_pass_safeguard_row(stream, s, part->group, guard->row[corner], passing);
+            gproji_pass_safeguard_row(stream, s, part->group, guard->row[item], passing);
     }
     if (stream->mode == GPROJI_READ) gproji_linearise_corners(part);
 }
@@ -23071,16 +23145,19 @@ static const gproji_rule gproji_corner_rule = {"corners",          GPROJ_BOUND, 
 GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     gproji_part *part = gproji_new_part(form, &gproji_corner_rule, 0);
     gproji_corners *guard = (gproji_corners *)gproji_part_take(part, 1, sizeof *guard);
-    int64_t corners = 2 * (int64_t)form->mesh->halfedge_count;
+    const gproj_mesh *mesh = form->mesh;
     if (!guard) return;
     part->data = guard;
-    guard->size = (double *)gproji_part_take(part, corners / 2, sizeof *guard->size);
-    guard->axis = (double *)gproji_part_take(part, 3 * (int64_t)form->mesh->face_count, sizeof *guard->axis);
-    guard->row = (int32_t *)gproji_part_take(part, corners, sizeof *guard->row);
-    guard->corner = (int32_t *)gproji_part_take(part, corners, sizeof *guard->corner);
-    guard->marked = (uint8_t *)gproji_part_take(part, corners, 1);
+    guard->edges = 2 * mesh->halfedge_count;
+    guard->items = guard->edges + mesh->edge_count;
+    guard->size = (double *)gproji_part_take(part, mesh->halfedge_count, sizeof *guard->size);
+    guard->length = (double *)gproji_part_take(part, mesh->edge_count, sizeof *guard->length);
+    guard->axis = (double *)gproji_part_take(part, 3 * (int64_t)mesh->face_count, sizeof *guard->axis);
+    guard->row = (int32_t *)gproji_part_take(part, guard->items, sizeof *guard->row);
+    guard->item = (int32_t *)gproji_part_take(part, guard->items, sizeof *guard->item);
+    guard->marked = (uint8_t *)gproji_part_take(part, guard->items, 1);
     if (!gproji_form_ready(form)) return;
-    if (corners > 0) memset(guard->row, -1, (size_t)corners * sizeof *guard->row);
+    if (guard->items > 0) memset(guard->row, -1, (size_t)guard->items * sizeof *guard->row);
     gproji_add_group(part, 0);
 }
 
@@ -23092,7 +23169,7 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     const gproji_group *g;
     gproji_corners *guard;
     gproji_part *part;
-    int32_t r, f, h, c;
+    int32_t r, f, h, c, e;
     if (wanted && !gproji_own_part(form, GPROJI_OWN_CORNERS)) gproji_add_corners(form);
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     if (!part || !gproji_form_ready(form)) return;
@@ -23102,7 +23179,7 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     g = gproji_group_at(form->system, part->group);
     for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
     x = gproj_system_values(form->system);
-    for (f = 0; wanted && f < mesh->face_count; ++f) { /* the areas that corners have now */
+    for (f = 0; wanted && f < mesh->face_count; ++f) { /* the sizes that corners and edges have now */
         double area[3], *axis = guard->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
@@ -23110,6 +23187,10 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
             guard->size[h] = gproji_dot3(area, axis);
             if (!(guard->size[h] > gproji_corner_none)) guard->size[h] = 0;
         }
+    }
+    for (e = 0; wanted && e < mesh->edge_count; ++e) {
+        guard->length[e] = gproji_edge_length(mesh, x, e);
+        if (!(guard->length[e] > gproji_corner_none)) guard->length[e] = 0;
     }
 }
 
@@ -23957,7 +24038,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstE", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstF", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
@@ -24021,11 +24102,12 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), gproj_keep(0));
 }
 
-/* Passes whom the library's own groups belong to, and the corners that have rows, in their order. The form gets those
+/* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form gets those
    that come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
-    int32_t list[GPROJI_OWN_COUNT], end = 2 * form->mesh->halfedge_count, count = 0, k;
+    int32_t list[GPROJI_OWN_COUNT], count = 0, k;
     bool in = gproji_comes_in(stream);
+    gproji_corners *corners;
     gproji_part *part;
     for (k = 0; !in && k < gproj_system_group_count(form->system); ++k)
         if (gproji_own_of(form, k)) list[count++] = (int32_t)gproji_own_of(form, k);
@@ -24038,15 +24120,16 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
     }
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
-    count = gproji_pass_integer(stream, &count, 0, part ? end : 0);
+    corners = part ? gproji_corners_of(part) : NULL;
+    count = gproji_pass_integer(stream, &count, 0, corners ? corners->items : 0);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t corner = in ? 0 : gproji_corners_of(part)->corner[k];
-        corner = gproji_pass_integer(stream, &corner, 0, end - 1);
+        int32_t item = in ? 0 : corners->item[k];
+        item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
         if (!in || stream->wrong) continue;
-        if (form->mesh->face[corner / 2] < 0)
+        if (item < corners->edges && form->mesh->face[item / 2] < 0)
             gproji_spoil(stream, "a corner is not one of a face");
-        else if (gproji_corners_of(part)->row[corner] < 0)
-            gproji_add_corner(part, corner);
+        else if (corners->row[item] < 0)
+            gproji_add_corner(part, item);
     }
 }
 

@@ -141,17 +141,31 @@ GPROJT_TEST(steps_are_bent) {
     }
 }
 
-/* Planar faces within a fixed boundary, where the first attempt ends short or spoils them: of four such patches at least two
-   become sound in a later one. */
+/* Of twelve patches of planar faces within a fixed boundary at least two become sound in a later attempt. */
 GPROJT_TEST(later_attempts_help) {
-    static const double waves[4] = {0.15, 0.3, 0.45, 0.5};
     int i, helped = 0;
-    for (i = 0; i < 4; ++i) {
+    for (i = 1; i <= 12; ++i) {
         double planarity;
-        gproj_result result = gprojt_solve_twisted(5, waves[i], gprojt_add_planar_fixed, &planarity);
+        gproj_result result = gprojt_solve_twisted(5, 0.05 * i, gprojt_add_planar_fixed, &planarity);
         helped += gprojt_is_sound(&result) && result.attempts > 1 && planarity <= 1e-12;
     }
     GPROJT_CHECK(helped >= 2);
+}
+
+static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
+    gprojt_add_planar(form, user);
+    gproj_add_gliding_boundary(form, 1);
+}
+
+/* The edges beside a fixed corner become short while the faces there keep their area: of these twelve patches four lost
+   one, as long as only corners were kept. */
+GPROJT_TEST(edges_are_kept) {
+    int i;
+    for (i = 1; i <= 12; ++i) {
+        double planarity;
+        gproj_result result = gprojt_solve_twisted(5, 0.05 * i, gprojt_add_planar_gliding, &planarity);
+        GPROJT_CHECK(gprojt_is_sound(&result) && planarity <= 1e-12);
+    }
 }
 
 typedef struct gprojt_attempts {
@@ -282,6 +296,7 @@ int main(void) {
     GPROJT_RUN(corners_are_let_go);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(later_attempts_help);
+    GPROJT_RUN(edges_are_kept);
     GPROJT_RUN(attempts);
     GPROJT_RUN(frames_and_states);
     GPROJT_RUN(solved_again);
