@@ -2630,6 +2630,7 @@ GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, 
    NULL. Returns the code. */
 GPROJI_INTERNAL gproj_code gproji_fail_list(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
                                             const char *format, va_list list) {
+    GPROJ_ASSERT(place != GPROJ_PLACE_NONE || index == -1);
     if (!error || error->code != GPROJ_OK) return code;
     error->code = code;
     error->place = place;
@@ -18065,7 +18066,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < p->sides && !p->bare; ++i)
         for (k = 0; k < p->strip[i]; ++k)
             if (!gproji_add_strip(patch, i, i + 1)) return false;
-    for (i = 0; i < p->sides && p->flat; ++i)
+    for (i = 0; i < p->sides; ++i)
         if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
     /* 4. The boundary as a loop, in a ring if one is wanted. */
     for (i = 0; i < p->sides; ++i)
@@ -23978,7 +23979,6 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     passing = gproji_pass_loop(stream, form->system, &solve.loop);
     if (stream->mode != GPROJI_READ) return passing;
     if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
-    solve.finished = false;
     solve.structure = gproji_structure_of(form->system);
     form->solve = solve;
     return passing;
