@@ -13899,7 +13899,7 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
 /* Goes to the next word, over ends of lines; false after an error. A text that ends is one: after `count` of `promised`
    elements, the noun. */
 GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64_t promised, const char *noun) {
-    if (!reader->code && !gproji_next_word_anywhere(reader))
+    if (!gproji_next_word_anywhere(reader))
         gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "the text ends after %l of %l %s; it seems to be cut off",
                     count, promised, noun);
     return !reader->code;
@@ -24391,7 +24391,7 @@ GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj
 /* Refuses positions of handles that are not finite or far too large. */
 GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const double *positions, gproj_error *error) {
     gproj_code code = gproji_check_positions(handles, positions, "handle", error);
-    if (code && error) error->place = GPROJ_PLACE_NONE; /* a handle is no vertex */
+    if (code && error) error->place = GPROJ_PLACE_NONE, error->index = -1; /* a handle is no vertex */
     return code;
 }
 
@@ -24592,7 +24592,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
         int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
         double size = 0;
         if (e < 0 || e > end)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k,
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                                "drag: the list of handle %d is no list", k);
         for (; e < end; ++e) {
             double weight = h->weight ? h->weight[e] : 1;
@@ -24603,7 +24603,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
             size += weight * weight;
         }
         if (!(size > 1e-100 && size < 1e100))
-            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                                "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
     return h->position ? gproji_check_handle_positions(h->count, h->position, error) : GPROJ_OK;
