@@ -543,6 +543,7 @@ GPROJT_TEST(opposite_sides_get_equal_numbers) {
             GPROJT_CHECK((count[turn % 2] == count[turn % 2 + 2]) == (k == 0)); /* 10 and 7; 20 and 10 */
             GPROJT_CHECK(k || (count[turn % 2] >= 8 && count[turn % 2] <= 9));
             GPROJT_CHECK(k || info.irregular_count == 0);
+            for (i = 0; i < 4; ++i) GPROJT_CHECK(k == 0 || fabs(count[i] - gprojt_curve_length(&c, i, i + 1)) <= 1);
             gproj_mesh_destroy(mesh);
         }
 }
@@ -729,6 +730,8 @@ GPROJT_TEST(refusals_of_options) {
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "ascending order"));
     c.corner[2] = 12;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, 12, "the points are 0 to 11"));
+    c = good, c.corner[0] = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, -1, "corner 0 is point -1"));
     c = good, c.corner_count = 1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "1 corners; give at least 2"));
     c = good, c.marked = false, c.options.corner_count = 3;

@@ -2201,6 +2201,15 @@ GPROJT_TEST(every_allocation_fails_once) {
     }
 }
 
+/* The same on a mesh with longer lists, which grow in all builders. */
+GPROJT_TEST(every_allocation_of_builders_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(2, 7, 0.02, 6);
+    gprojt_props props = gprojt_take_props(mesh);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_all, &props, 0, NULL) >= 100);
+    gprojt_give_props(&props);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(no_allocation_in_a_second_solve) {
     gproj_mesh *mesh = gprojt_noisy(2, 8, 0.05, 6);
     gprojt_props props = gprojt_take_props(mesh);
@@ -2312,6 +2321,7 @@ int main(void) {
     GPROJT_RUN(own_rows_units_and_cancelling);
     GPROJT_RUN(verdict_names_what_fights);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(every_allocation_of_builders_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
     GPROJT_RUN(beyond_all_coordinates);
     return gprojt_report();

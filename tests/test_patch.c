@@ -230,7 +230,48 @@ GPROJT_TEST(all_patterns_are_found) {
     GPROJT_CHECK(solvable > 300);
 }
 
+/* -- distortion -- */
+
+/* (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X) with X = (D + sqrt(D^2 + epsilon^2)) / 2, as it is written. */
+static double distortion(const double z[4], double epsilon) {
+    double d = z[0] * z[3] - z[1] * z[2], x = (d + sqrt(d * d + epsilon * epsilon)) / 2;
+    return (z[0] * z[0] + z[1] * z[1] + z[2] * z[2] + z[3] * z[3] + GPROJI_AREA_WEIGHT * (1 + d * d)) / (2 * x);
+}
+
+GPROJT_TEST(distortion_and_its_derivatives) {
+    uint64_t seed = 7;
+    int32_t round, i, j, turned = 0;
+    for (round = 0; round < 200; ++round) {
+        double z[4], g[4], h[4][4], epsilon = round % 4 ? 0.1 + gprojt_uniform(&seed) : 0, d, value, step = 1e-6;
+        for (i = 0; i < 4; ++i) z[i] = 3 * gprojt_uniform(&seed) - 1.5;
+        d = z[0] * z[3] - z[1] * z[2];
+        if (fabs(d) < 0.05 || (epsilon == 0 && d < 0)) continue;
+        value = gproji_corner_distortion(z, epsilon, g, h);
+        turned += d < 0;
+        GPROJT_NEAR(value, distortion(z, epsilon), 1e-9 * value);
+        GPROJT_NEAR(gproji_corner_distortion(z, epsilon, NULL, NULL), value, 0);
+        for (i = 0; i < 4; ++i) {
+            double up[4], down[4], slope;
+            memcpy(up, z, sizeof up), memcpy(down, z, sizeof down);
+            up[i] += step, down[i] -= step;
+            slope = (distortion(up, epsilon) - distortion(down, epsilon)) / (2 * step);
+            GPROJT_NEAR(g[i], slope, 1e-4 * (1 + value));
+            for (j = 0; j < 4; ++j) GPROJT_NEAR(h[i][j], h[j][i], 1e-12 * fabs(h[i][i]));
+        }
+        for (j = 0; j < 20; ++j) { /* the convex part is positive definite */
+            double v[4], sum = 0;
+            int32_t k;
+            for (i = 0; i < 4; ++i) v[i] = gprojt_uniform(&seed) - 0.5;
+            for (i = 0; i < 4; ++i)
+                for (k = 0; k < 4; ++k) sum += v[i] * h[i][k] * v[k];
+            GPROJT_CHECK(sum > 0);
+        }
+    }
+    GPROJT_CHECK(turned > 20);
+}
+
 int main(void) {
+    GPROJT_RUN(distortion_and_its_derivatives);
     GPROJT_RUN(patterns_solve_their_equations);
     GPROJT_RUN(all_patterns_are_found);
     return gprojt_report();

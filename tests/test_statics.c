@@ -857,6 +857,29 @@ GPROJT_TEST(funicular_shapes_and_plates) {
     }
 }
 
+/* The verdict names the three vertices whose forces are off most, in a coordinate, the worst last, and by how much. */
+static void gprojt_check_unbalanced(const gproj_mesh *mesh, const gproj_result *result, const double *sum,
+                                    gprojt_list pins, double unbalance) {
+    const char *piece = strstr(result->message, "was found near this shape: vertices ");
+    double off[3] = {0, 0, 0}, told = -1;
+    int vertex[3] = {-1, -1, -1};
+    int32_t v, k;
+    GPROJT_REQUIRE(piece != NULL);
+    GPROJT_CHECK(
+        sscanf(piece, "was found near this shape: vertices %d, %d, %d out of balance by up to %lf of the largest load",
+               &vertex[0], &vertex[1], &vertex[2], &told) == 4);
+    GPROJT_NEAR(told, unbalance, 3e-3 * unbalance);
+    for (k = 0; k < 3; ++k) {
+        GPROJT_REQUIRE(vertex[k] >= 0 && vertex[k] < mesh->vertex_count && vertex[k] != vertex[(k + 1) % 3]);
+        GPROJT_CHECK(!gprojt_listed(pins.item, pins.count, vertex[k]));
+        for (v = 3 * vertex[k]; v < 3 * vertex[k] + 3; ++v) off[k] = fmax(off[k], fabs(sum[v]));
+    }
+    GPROJT_CHECK(off[0] <= off[1] && off[1] <= off[2]);
+    for (v = 0; v < 3 * mesh->vertex_count; ++v)
+        if (!gprojt_listed(pins.item, pins.count, v / 3) && v / 3 != vertex[1] && v / 3 != vertex[2])
+            GPROJT_CHECK(fabs(sum[v]) <= off[0] * (1 + 1e-9));
+}
+
 GPROJT_TEST(plates_are_infeasible) {
     int shape;
     for (shape = QUADS; shape <= HEXAGONS; ++shape) {
@@ -885,6 +908,7 @@ GPROJT_TEST(plates_are_infeasible) {
         }
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && result.outcome != GPROJ_FAILED && result.residual > 1e-3);
         GPROJT_NEAR(result.residual, residual, 1e-6 * residual);
+        gprojt_check_unbalanced(mesh, &result, sum, pins, unbalance);
         GPROJT_NEAR(gproj_measure_forces(form, NULL).residual, unbalance, 1e-9 + 1e-9 * unbalance);
         GPROJT_CHECK(unbalance > 1e-6 && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
         gproj_form_destroy(form);
