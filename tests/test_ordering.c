@@ -532,6 +532,74 @@ static int32_t largest_flow(const gproji_band *band) {
     return flow;
 }
 
+/* A random network, in one block of zeros: nodes at the source, nodes at the sink, capacities from 1 to 3. */
+static gproji_band random_band(uint64_t *seed, int32_t *block) {
+    gproji_band band;
+    int32_t n = 3 + gprojt_below(seed, 20), arcs = n + gprojt_below(seed, 3 * n), i, k, e = 0;
+    static bool near[32][32];
+    memset(&band, 0, sizeof band), memset(near, 0, sizeof near), memset(block, 0, 4000 * sizeof *block);
+    for (k = 0; k < arcs; ++k) {
+        int32_t a = gprojt_below(seed, n), b = gprojt_below(seed, n);
+        near[a][b] = near[b][a] = a != b;
+    }
+    band.nodes = n;
+    band.start = block, band.unit = block + 100, band.load = block + 200, band.level = block + 300;
+    band.turn = block + 400, band.queue = block + 500, band.origin = block + 700, band.to = block + 900;
+    band.ends = (unsigned char *)(block + 3000), band.mark = band.ends + 100;
+    for (i = 0; i < n; ++i) {
+        band.start[i] = e;
+        for (k = 0; k < n; ++k)
+            if (near[i][k]) band.to[e++] = k;
+        band.unit[i + 1] = band.unit[i] + 1 + gprojt_below(seed, 3);
+        if (i < 1 + n / 6) band.ends[i] |= GPROJI_BAND_SOURCE;
+        if (i >= n - 1 - n / 6) band.ends[i] |= GPROJI_BAND_SINK;
+    }
+    band.start[n] = e;
+    return band;
+}
+
+/* Flows of the largest size, which keep to capacities and arcs, and lose nothing on the way. */
+GPROJT_TEST(dissection_flows) {
+    static int32_t block[4000];
+    uint64_t seed = 2;
+    int32_t tries, i, c, k;
+    for (tries = 0; tries < 2000; ++tries) {
+        gproji_band band = random_band(&seed, block);
+        int32_t flow = 0, out[32] = {0};
+        while (gproji_band_augment(&band)) continue;
+        for (i = 0; i < band.nodes; ++i) {
+            GPROJT_CHECK(band.load[i] >= 0 && band.load[i] <= band.unit[i + 1] - band.unit[i]);
+            for (c = band.unit[i]; c < band.unit[i] + band.load[i]; ++c) {
+                bool arc = band.origin[c] < 0 && (band.ends[i] & GPROJI_BAND_SOURCE);
+                for (k = band.start[i]; k < band.start[i + 1]; ++k) arc |= band.to[k] == band.origin[c];
+                GPROJT_CHECK(arc);
+                if (band.origin[c] < 0)
+                    ++flow;
+                else
+                    ++out[band.origin[c]];
+            }
+        }
+        for (i = 0; i < band.nodes; ++i)
+            GPROJT_CHECK(band.ends[i] & GPROJI_BAND_SINK ? out[i] <= band.load[i] : out[i] == band.load[i]);
+        GPROJT_CHECK(flow == largest_flow(&band));
+    }
+}
+
+/* Whole units, exact if they are few. */
+GPROJT_TEST(dissection_capacities) {
+    int32_t divisor, largest, weight;
+    for (divisor = 1; divisor < 40; ++divisor)
+        for (largest = divisor; largest < 900; largest += divisor)
+            for (weight = divisor; weight <= largest; weight += divisor) {
+                int32_t units = gproji_band_capacity(weight, divisor, largest);
+                if (largest <= GPROJI_BAND_UNITS * divisor)
+                    GPROJT_CHECK(units * divisor == weight);
+                else
+                    GPROJT_CHECK(units >= 1 && units <= GPROJI_BAND_UNITS &&
+                                 fabs(units - (double)weight * GPROJI_BAND_UNITS / largest) <= 1);
+            }
+}
+
 /* The cut that was chosen: its weights are those counted here, and no separator in its band is lighter. */
 static void check_cut(gproji_nd *nd, gproji_nd_cut *cut, unsigned char *side) {
     bool exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
@@ -792,6 +860,8 @@ int main(void) {
     GPROJT_RUN(ordering_of_large_graphs);
     GPROJT_RUN(ordering_of_grids);
     GPROJT_RUN(dissection_separates);
+    GPROJT_RUN(dissection_flows);
+    GPROJT_RUN(dissection_capacities);
     GPROJT_RUN(dissection_weighs_and_separates);
     GPROJT_RUN(dissection_orders_leaves);
     GPROJT_RUN(dissection_estimates);

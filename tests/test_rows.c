@@ -268,9 +268,10 @@ GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
     static const char *const words[] = {"neither", "neither",    "neither",    "none of",     "none of",
                                         "3 each",  "1 or more",  "1 or more",  "beyond 1e70", "1e50",
-                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither"};
+                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither",
+                                        "-1 terms", "or no list"};
     int32_t i;
-    for (i = 0; i < 15; ++i) {
+    for (i = 0; i < 17; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t planar = gproj_add_planarity(form, 1), got;
@@ -289,6 +290,8 @@ GPROJT_TEST(wrong_rows_are_refused) {
               : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
               : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
               : i == 9 || i == 11 || i == 12 ? group
+              : i == 15                      ? gproj_form_add_row(form, group, -1, &term, 0, 0)
+              : i == 16                      ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
               : i == 13                      ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
                                              : gproj_form_add_row(form, group, 1, &term, 0, 0);
         if (!strstr(gproj_form_error(form)->message, words[i]))
