@@ -11,7 +11,7 @@ change makes no difference (then mutants.txt says why). One that takes much long
 Everything is in build/mutants: the copy of the project (tree), the list (mutants.json), one line a finished mutant
 (results.jsonl). A run that is stopped goes on where it was, as long as header, seed, number and sections are the same;
 --again tries survivors once more (after tests were added), --only 3,17 tries these, --jobs at a time (2). --sanitized tries
-what survives with the sanitized programs as well. The last lines add up by section; the exit code is 0 whatever survives.
+what survives with the sanitized programs as well, --report only adds up what was tried. The last lines add up by section; the exit code is 0 whatever survives.
 """
 import argparse, hashlib, json, multiprocessing, os, random, re, resource, signal, subprocess, sys, time
 
@@ -616,7 +616,7 @@ def build(programs, sanitized, jobs):
 
 
 def read_equivalent():
-    """mutants.txt: function | old | new | reason."""
+    """mutants.txt: function | old | new | reason; or function | (kind) | * | reason, for numbers that are tuned."""
     path, answer = os.path.join(HERE, "mutants.txt"), {}
     if os.path.exists(path):
         for line in open(path):
@@ -634,25 +634,27 @@ def report(mutants, results):
     for m, r in zip(mutants, results):
         if r is None: continue
         verdict = r["verdict"]
-        if verdict != "killed" and (m["function"], m["old"], m["new"] or "nothing") in equivalent: verdict = "equivalent"
+        if verdict != "killed":
+            if (m["function"], m["old"], m["new"] or "nothing") in equivalent: verdict = "equivalent"
+            elif (m["function"], f"({m['kind']})", "*") in equivalent: verdict = "tuned"
         if verdict in ("survived", "unreached"): print(f"{verdict}: {m['number']}: {one_line(m)}")
         if m["section"] not in rows:
             rows[m["section"]] = {}
             order.append(m["section"])
         rows[m["section"]][verdict] = rows[m["section"]].get(verdict, 0) + 1
-    names = ["killed", "survived", "unreached", "equivalent"]
+    names = ["killed", "survived", "unreached", "equivalent", "tuned"]
     total = {n: sum(row.get(n, 0) for row in rows.values()) for n in names}
     for section in order + ["all"]:
         row = rows.get(section, total)
         print(f"{section:14}" + "".join(f"{row.get(n, 0):5} {n}" for n in names))
-    of = sum(total.values()) - total["equivalent"]
+    of = sum(total.values()) - total["equivalent"] - total["tuned"]
     print(f"mutants: {total['killed']} of {of} killed ({100 * total['killed'] / max(of, 1):.1f} %)")
 
 
 def prepare(source, options):
     """The chosen mutants; those of the last run if it was asked for the same."""
     with open(os.path.abspath(__file__), "rb") as f:
-        own = hashlib.sha256(re.search(b"# ---- the header as tokens.*# ---- running", f.read(), re.S).group()).hexdigest()
+        own = hashlib.sha256(re.search(b"# ---- the header as tokens.*?# ---- running", f.read(), re.S).group()).hexdigest()
     key = [hashlib.sha256(source.encode()).hexdigest(), own, options.number, options.seed, options.section]
     path = os.path.join(WORK, "mutants.json")
     if os.path.exists(path):
@@ -681,22 +683,24 @@ def main():
     parser.add_argument("--sanitized", action="store_true")
     parser.add_argument("--only", default="")
     parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--report", action="store_true")
     options = parser.parse_args()
     os.makedirs(WORK, exist_ok=True)
     make_tree()
     with open(os.path.join(ROOT, "guidedproj.h")) as f: source = f.read()
     mutants = prepare(source, options)
+    results, path = [None] * len(mutants), os.path.join(WORK, "results.jsonl")
+    if os.path.exists(path):
+        for line in open(path):
+            r = json.loads(line)
+            results[r["number"]] = r
+    if options.report: return report(mutants, results)
     programs = sorted(n[:-2] for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.c", n))
     programs += sorted(n for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.sh", n) and n != "test_web.sh")
     print(f"mutants: {len(mutants)} chosen; compiles", flush=True)
     build(programs, options.sanitized, options.jobs)
     global UNITS
     UNITS = measure(programs, len(mutants), options.jobs)
-    results, path = [None] * len(mutants), os.path.join(WORK, "results.jsonl")
-    if os.path.exists(path):
-        for line in open(path):
-            r = json.loads(line)
-            results[r["number"]] = r
     only = {int(n) for n in options.only.split(",") if n}
     print(f"mutants: {len(UNITS)} cases, {sum(u[0] for u in UNITS):.0f} s of them", flush=True)
     # In the order of a shuffle, so that a run that is stopped tells of all sections.
