@@ -230,6 +230,72 @@ GPROJT_TEST(all_patterns_are_found) {
     GPROJT_CHECK(solvable > 300);
 }
 
+/* The path with rows, strips 1 and n - 1 as thin as can be, is found with all strips whenever there is one. */
+static bool has_rows(int32_t sides, int32_t first, const int32_t *length) {
+    gproji_pattern p;
+    int32_t i, sum;
+    memset(&p, 0, sizeof p);
+    p.sides = sides, p.first = first, p.end[0] = p.end[1] = 1, p.edges = sides - 1;
+    for (i = 0; i < sides; ++i) p.strip[i] = 1;
+    do {
+        for (i = 1, sum = 0; i < sides; ++i) { /* the edges of side i are those of the path, from its end */
+            int32_t edge = length[(i + first) % sides] - p.strip[i - 1] - p.strip[(i + 1) % sides];
+            p.edge[sides - 1 - i] = edge, sum += edge;
+        }
+        p.rows = (length[first] - sum - p.strip[sides - 1] - p.strip[1]) / 2;
+        if (solves(&p, length)) return true;
+        for (i = 0; i < sides; ++i) {
+            if (i == 1 || i == sides - 1) continue;
+            if (++p.strip[i] <= 6) break;
+            p.strip[i] = 1;
+        }
+    } while (i < sides);
+    return false;
+}
+
+GPROJT_TEST(patterns_with_rows_are_found) {
+    static const int32_t longest[SIDES + 1] = {0, 0, 12, 8, 5, 4, 3};
+    static gproji_candidates c;
+    int32_t sides, i, first, with = 0;
+    for (sides = 2; sides <= SIDES; ++sides) {
+        int32_t length[SIDES] = {1, 1, 1, 1, 1, 1};
+        do {
+            if (sum_of(sides, length) % 2) continue;
+            gproji_find_patterns(&c, sides, length);
+            for (first = 0; first < sides; ++first) {
+                bool found = false;
+                if (sides == 2 && length[first] < length[1 - first]) continue;
+                for (i = 0; i < c.count; ++i)
+                    found |= c.pattern[i].first == first && c.pattern[i].edges == sides - 1 &&
+                             c.pattern[i].end[0] == 1 && has_all_strips(&c.pattern[i]);
+                if (has_rows(sides, first, length)) {
+                    if (!found)
+                        printf("  %d sides %d %d %d %d, first %d\n", (int)sides, (int)length[0], (int)length[1],
+                               (int)length[2], (int)length[3], (int)first);
+                    GPROJT_CHECK(found);
+                    ++with;
+                }
+            }
+        } while (next_lengths(sides, 1, longest[sides], length));
+    }
+    GPROJT_CHECK(with > 100);
+}
+
+/* Irregular vertices are far from the boundary and from each other: between two sides of n edges they divide the length
+   into three parts. */
+GPROJT_TEST(irregular_vertices_are_apart) {
+    static gproji_candidates c;
+    int32_t n, i, length[2];
+    for (n = 8; n <= 40; ++n) {
+        length[0] = length[1] = n;
+        gproji_find_patterns(&c, 2, length);
+        for (i = 0; i < c.count && c.pattern[i].edges != 1;) ++i;
+        GPROJT_REQUIRE(i < c.count);
+        GPROJT_CHECK(c.pattern[i].strip[0] == c.pattern[i].strip[1] && abs(c.pattern[i].strip[0] - n / 3) <= 1);
+        GPROJT_CHECK(abs(c.pattern[i].edge[0] - n / 3) <= 2);
+    }
+}
+
 /* -- distortion -- */
 
 /* (|a|^2 + |b|^2 + lambda (1 + D^2)) / (2 X) with X = (D + sqrt(D^2 + epsilon^2)) / 2, as it is written. */
@@ -274,5 +340,7 @@ int main(void) {
     GPROJT_RUN(distortion_and_its_derivatives);
     GPROJT_RUN(patterns_solve_their_equations);
     GPROJT_RUN(all_patterns_are_found);
+    GPROJT_RUN(patterns_with_rows_are_found);
+    GPROJT_RUN(irregular_vertices_are_apart);
     return gprojt_report();
 }

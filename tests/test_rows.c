@@ -302,6 +302,29 @@ GPROJT_TEST(wrong_rows_are_refused) {
     }
 }
 
+/* Where there is a sphere already, it is found at the start: of edges that all touch one, as those of an octahedron do, and
+   of a pyramid's that do not. */
+GPROJT_TEST(midspheres_begin_at_their_place) {
+    static const int32_t degree[8] = {3, 3, 3, 3, 3, 3, 3, 3};
+    static const int32_t corner[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    int32_t i, bent;
+    for (bent = 0; bent < 2; ++bent) {
+        double position[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        if (bent) position[2] = 0.7;
+        for (i = 0; i < 18; ++i) position[i] = 3 * position[i] + 5 * (i % 3);
+        mesh = gproj_mesh_create(6, position, 8, degree, corner, NULL, NULL);
+        form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_add_midsphere(form, mesh->edge_count, NULL, 1) >= 0);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(bent ? result.residual > 1e-3 : result.residual < 1e-12);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The midpoints' sphere, checked apart from the library; on a real sphere it is that one. */
 GPROJT_TEST(edge_midpoints_on_a_sphere) {
     gprojt_soup soup = gprojt_cube_sphere(3);
@@ -373,6 +396,7 @@ int main(void) {
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
     GPROJT_RUN(wrong_rows_are_refused);
+    GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
