@@ -17908,9 +17908,9 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
     }
     while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
-            int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
+            int32_t before = (i + n - 1) % n, after = (i + 1) % n; /* differ: two sides have rows >= 0 */
             if (i == 1 || i == n - 1) continue;
-            if ((before > 0 && rest[before] < least_rest) || (after > 0 && rest[after] < least_rest)) continue;
+            if ((before > 0 && rest[before] < 2) || (after > 0 && rest[after] < 2)) continue;
             if (best < 0 || p->strip[i] < p->strip[best]) best = i;
         }
         if (best < 0) return false;
@@ -21571,7 +21571,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
                     part->rule->name, count);
         return -1;
     }
-    if (element < -1 || element >= gproji_max(gproji_element_count(form->mesh, part->rule->place), element == -1)) {
+    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place)) {
         gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
                     "%s: there is no %s %d, and -1 is none", part->rule->name, gproji_place_word(part->rule->place),
                     element);
