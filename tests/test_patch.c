@@ -179,9 +179,10 @@ static int32_t times_offered(const gproji_candidates *c, kind k) {
    others. */
 static bool is_solvable(kind k, int32_t sides, const int32_t *length) {
     gproji_pattern p;
-    int32_t most = 9, core[SIDES], first, second, i;
+    int32_t most = 1, core[SIDES], first, second, i;
     memset(&p, 0, sizeof p);
     p.sides = sides, p.first = k.first, p.end[0] = k.end[0], p.end[1] = k.end[1], p.edges = k.edges, p.below = k.below;
+    for (i = 0; i < sides; ++i) most = gproji_max(most, length[i]); /* nothing is longer than a side */
     for (i = 0; i < p.edges; ++i) p.edge[i] = 1;
     do {
         core_lengths(&p, core);
@@ -197,7 +198,7 @@ static bool is_solvable(kind k, int32_t sides, const int32_t *length) {
 }
 
 GPROJT_TEST(all_patterns_are_found) {
-    static const int32_t longest[SIDES + 1] = {0, 0, 1, 1, 5, 3, 2};
+    static const int32_t longest[SIDES + 1] = {0, 0, 1, 1, 4, 3, 2};
     static gproji_candidates c;
     int32_t sides, solvable = 0;
     for (sides = 2; sides <= SIDES; ++sides) {
@@ -248,7 +249,7 @@ static bool has_rows(int32_t sides, int32_t first, const int32_t *length) {
         if (solves(&p, length)) return true;
         for (i = 0; i < sides; ++i) {
             if (i == 1 || i == sides - 1) continue;
-            if (++p.strip[i] <= 6) break;
+            if (++p.strip[i] <= 4) break;
             p.strip[i] = 1;
         }
     } while (i < sides);
@@ -256,7 +257,7 @@ static bool has_rows(int32_t sides, int32_t first, const int32_t *length) {
 }
 
 GPROJT_TEST(patterns_with_rows_are_found) {
-    static const int32_t longest[SIDES + 1] = {0, 0, 12, 8, 5, 4, 3};
+    static const int32_t longest[SIDES + 1] = {0, 0, 12, 8, 4, 4, 3};
     static gproji_candidates c;
     int32_t sides, i, first, with = 0;
     for (sides = 2; sides <= SIDES; ++sides) {
