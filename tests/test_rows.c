@@ -302,6 +302,25 @@ GPROJT_TEST(wrong_rows_are_refused) {
     }
 }
 
+GPROJT_TEST(unknowns_refused) {
+    static const double none[3] = {0, 0, 0};
+    gproj_mesh *mesh = gprojt_cap(4, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double value[2];
+    gproj_error error;
+    GPROJT_CHECK(gproj_form_get_unknowns(NULL, 0, 1, value, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 1, NULL, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, -1, value, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, -1, 1, value, &error) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 3 * mesh->vertex_count - 1, 2, value, &error) == GPROJ_ERROR_INDEX &&
+                 error.place == GPROJ_PLACE_VARIABLE && error.index == 3 * mesh->vertex_count);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 2, value, NULL) == GPROJ_OK &&
+                 gproj_form_error(form)->code == GPROJ_OK);
+    GPROJT_NEAR(value[1], mesh->position[1], 1e-12);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Where there is a sphere already, it is found at the start: of edges that all touch one, as those of an octahedron do, and
    of a pyramid's that do not. */
 GPROJT_TEST(midspheres_begin_at_their_place) {
@@ -396,6 +415,7 @@ int main(void) {
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
     GPROJT_RUN(wrong_rows_are_refused);
+    GPROJT_RUN(unknowns_refused);
     GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
     GPROJT_RUN(every_allocation_fails_once);
