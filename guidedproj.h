@@ -2631,6 +2631,7 @@ GPROJI_INTERNAL void gproji_format(char *text, size_t size, const char *format, 
    NULL. Returns the code. */
 GPROJI_INTERNAL gproj_code gproji_fail_list(gproj_error *error, gproj_code code, gproj_place place, int64_t index,
                                             const char *format, va_list list) {
+    GPROJ_ASSERT(place != GPROJ_PLACE_NONE || index == -1);
     if (!error || error->code != GPROJ_OK) return code;
     error->code = code;
     error->place = place;
@@ -13903,7 +13904,7 @@ GPROJI_INTERNAL bool gproji_is_off_word(const gproji_reader *reader, bool *plain
 /* Goes to the next word, over ends of lines; false after an error. A text that ends is one: after `count` of `promised`
    elements, the noun. */
 GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64_t promised, const char *noun) {
-    if (!reader->code && !gproji_next_word_anywhere(reader))
+    if (!gproji_next_word_anywhere(reader))
         gproji_stop(reader, GPROJ_ERROR_SYNTAX, reader->line, "the text ends after %l of %l %s; it seems to be cut off",
                     count, promised, noun);
     return !reader->code;
@@ -17912,9 +17913,9 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
     }
     while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
-            int32_t before = (i + n - 1) % n, after = (i + 1) % n, least_rest = before == after ? 3 : 2;
+            int32_t before = (i + n - 1) % n, after = (i + 1) % n; /* differ: two sides have rows >= 0 */
             if (i == 1 || i == n - 1) continue;
-            if ((before > 0 && rest[before] < least_rest) || (after > 0 && rest[after] < least_rest)) continue;
+            if ((before > 0 && rest[before] < 2) || (after > 0 && rest[after] < 2)) continue;
             if (best < 0 || p->strip[i] < p->strip[best]) best = i;
         }
         if (best < 0) return false;
@@ -18070,7 +18071,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < p->sides && !p->bare; ++i)
         for (k = 0; k < p->strip[i]; ++k)
             if (!gproji_add_strip(patch, i, i + 1)) return false;
-    for (i = 0; i < p->sides && p->flat; ++i)
+    for (i = 0; i < p->sides; ++i)
         if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
     /* 4. The boundary as a loop, in a ring if one is wanted. */
     for (i = 0; i < p->sides; ++i)
@@ -21575,7 +21576,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
                     part->rule->name, count);
         return -1;
     }
-    if (element < -1 || element >= gproji_max(gproji_element_count(form->mesh, part->rule->place), element == -1)) {
+    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place)) {
         gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
                     "%s: there is no %s %d, and -1 is none", part->rule->name, gproji_place_word(part->rule->place),
                     element);
@@ -24064,7 +24065,6 @@ GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_fo
     passing = gproji_pass_loop(stream, form->system, &solve.loop);
     if (stream->mode != GPROJI_READ) return passing;
     if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
-    solve.finished = false;
     solve.structure = gproji_structure_of(form->system);
     form->solve = solve;
     return passing;
@@ -24479,7 +24479,7 @@ GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj
 /* Refuses positions of handles that are not finite or far too large. */
 GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const double *positions, gproj_error *error) {
     gproj_code code = gproji_check_positions(handles, positions, "handle", error);
-    if (code && error) error->place = GPROJ_PLACE_NONE; /* a handle is no vertex */
+    if (code && error) error->place = GPROJ_PLACE_NONE, error->index = -1; /* a handle is no vertex */
     return code;
 }
 
@@ -24680,7 +24680,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
         int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
         double size = 0;
         if (e < 0 || e > end)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, k,
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                                "drag: the list of handle %d is no list", k);
         for (; e < end; ++e) {
             double weight = h->weight ? h->weight[e] : 1;
@@ -24691,7 +24691,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
             size += weight * weight;
         }
         if (!(size > 1e-100 && size < 1e100))
-            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, k,
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                                "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
     return h->position ? gproji_check_handle_positions(h->count, h->position, error) : GPROJ_OK;

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""mutants.py [--number N] [--seed S] [--section NAMES] [--again] [--only NUMBERS] - mutation testing of guidedproj.h.
+"""mutants.py [--number N] [--seed S] [--section NAMES] [--again] [--only NUMBERS] [--jobs J] [--sanitized] - mutation testing of
+guidedproj.h.
 
 Writes one copy of the header in which each of N small changes (mutants) can be chosen at run time (mutant schemata, Untch,
 Offutt, Harrold 1993), compiles the test programs and the tool with it once, finds which test cases reach which mutant, and
-runs these cases, the shortest first, until one fails. A mutant that no case notices has survived: a test is missing, or
-the change makes no difference (then mutants.txt says why).
+runs these cases until one fails: short ones first, and those of the programs whose first lines name the mutant's section
+(">>fill") before others that are a tenth as long. A mutant that no case notices has survived: a test is missing, or the
+change makes no difference (then mutants.txt says why). One that takes much longer than the header without it is killed.
 
 Everything is in build/mutants: the copy of the project (tree), the list (mutants.json), one line a finished mutant
 (results.jsonl). A run that is stopped goes on where it was, as long as header, seed, number and sections are the same;
---again tries survivors once more (after tests were added), --only 3,17 tries these. --sanitized tries what survives with
-the sanitized programs as well. The last lines add up by section; the exit code is 0 whatever survives.
+--again tries survivors once more (after tests were added), --only 3,17 tries these, --jobs at a time (2). --sanitized tries
+what survives with the sanitized programs as well, --report only adds up what was tried. The last lines add up by section; the exit code is 0 whatever survives.
 """
-import argparse, hashlib, json, os, random, re, resource, subprocess, sys, time
+import argparse, hashlib, json, multiprocessing, os, random, re, resource, signal, subprocess, sys, time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(HERE)
@@ -390,7 +392,7 @@ def open_of(tokens, at):
 
 def compiled_lines():
     """The header's lines that this machine's compiler sees, behind #if."""
-    run = subprocess.run(["cc", "-std=c11", "-E", "-I", ROOT, "-x", "c", "-"], capture_output=True, text=True,
+    run = subprocess.run(["cc", "-std=c11", "-E", "-I", ROOT, "-x", "c", "-"], capture_output=True, text=True, cwd=ROOT,
                          input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n')
     lines, inside, at = set(), False, 0
     for text in run.stdout.split("\n"):
@@ -490,7 +492,8 @@ def drop_those_that_do_not_compile(source, mutants):
         bad = set()
         for files in ("0", "1"):
             run = subprocess.run(["cc", "-std=c11", "-fsyntax-only", "-I", TREE, "-DGPROJI_FILES=" + files, "-x", "c", "-"],
-                                 input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n', capture_output=True, text=True)
+                                 input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n', capture_output=True,
+                                 text=True, cwd=TREE)
             bad |= {int(n) for n in re.findall(r"guidedproj\.h:(\d+):\d+: (?:warning|error)", run.stderr)}
         kept = [m for m in mutants if not bad.intersection(range(m["line"], m["line"] + m["span"] + 1))]
         if len(kept) == len(mutants):
@@ -501,8 +504,12 @@ def drop_those_that_do_not_compile(source, mutants):
 
 # ---- running ----
 
+UNITS = []  # what measure returns, for the processes that try mutants
+
+
 def limits(seconds):
     def set_limits():
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # a shell ignores it for what runs behind it
         resource.setrlimit(resource.RLIMIT_CPU, (int(seconds) + 1, int(seconds) + 2))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 30, 1 << 30))
@@ -538,63 +545,78 @@ def run_unit(unit, mutant=None, reached=None, seconds=3600, sanitized=False):
     return well, used, output
 
 
-def measure_program(program, count):
-    """The cases of a program: [case, processor seconds, mutants reached]."""
+def measure_program(job):
+    """(program, its cases: [case, processor seconds, mutants reached])"""
+    program, count = job
     if program.endswith(".sh"): cases = [None]
     else:
         _, _, output = run_unit((program, None))
         cases = re.findall(r"(?m)^ok   (\w+)$", output)
         print("".join(f"mutants: {program} {case} fails without a mutant, left out\n"
                       for case in re.findall(r"(?m)^FAIL (\w+)", output)), end="", flush=True)
-    reached, answer = os.path.join(WORK, "reached"), []
+    reached, answer = os.path.join(WORK, f"reached.{program}"), []
     for case in cases:
         with open(reached, "wb") as f: f.write(bytes(count + 1))
         well, used, output = run_unit((program, case), reached=reached)
         if not well:
-            print(f"mutants: {program} {case or ''} fails without a mutant, left out", flush=True)
+            print(f"mutants: {program} {case or ''} fails without a mutant, left out:\n{output[-1000:]}", flush=True)
             continue
         with open(reached, "rb") as f: hits = f.read()
         answer.append([case, round(used, 4), [i for i in range(count) if hits[i]]])
-    return answer
+    if cases: os.remove(reached)
+    return program, answer
 
 
-def measure(programs, count):
-    """[(seconds, program, case, set of mutants)], kept from run to run for programs that did not change."""
-    path, units = os.path.join(WORK, "reach.json"), []
+def named_sections(program):
+    """The sections that the first lines of a test name: what it is about."""
+    path = os.path.join(HERE, program + ("" if program.endswith(".sh") else ".c"))
+    with open(path) as f: return set(re.findall(r">>([a-z-]+)", f.read(600)))
+
+
+def measure(programs, count, jobs):
+    """[(seconds, program, case, set of mutants, sections)], kept from run to run for programs that did not change."""
+    path, todo, digests = os.path.join(WORK, "reach.json"), [], {}
     kept = json.load(open(path)) if os.path.exists(path) else {}
     for program in programs:
         file = os.path.join(TREE, "tests", "build/tool" if program.endswith(".sh") else "build/" + program)
         if not os.path.exists(file): sys.exit(f"mutants: {program} did not build")
         digest = hashlib.sha256(open(file, "rb").read())
         if program.endswith(".sh"): digest.update(open(os.path.join(HERE, program), "rb").read())
-        if kept.get(program, {}).get("digest") != digest.hexdigest():
-            kept[program] = dict(digest=digest.hexdigest(), cases=measure_program(program, count))
+        digests[program] = digest.hexdigest()
+        if kept.get(program, {}).get("digest") != digests[program]: todo.append((program, count))
+    with multiprocessing.Pool(jobs) as pool:
+        for program, cases in pool.imap_unordered(measure_program, todo):
+            kept[program] = dict(digest=digests[program], cases=cases)
             with open(path, "w") as f: json.dump(kept, f)
-        units += [(used, program, case, set(hits)) for case, used, hits in kept[program]["cases"]]
-    return sorted(units, key=lambda u: u[0])
+    return [(used, program, case, set(hits), named_sections(program))
+            for program in programs for case, used, hits in kept[program]["cases"]]
 
 
-def try_mutant(number, units, sanitized):
-    """(verdict, the case that noticed, how many cases ran)"""
-    ran = 0
-    for used, program, case, hits in units:
-        if number not in hits: continue
-        ran += 1
-        well, _, _ = run_unit((program, case), mutant=number, seconds=(20 if sanitized else 4) * used + 2, sanitized=sanitized)
-        if not well: return "killed", f"{program} {case or ''}".strip(), ran
-    return ("survived" if ran else "unreached"), "", ran
+def try_mutant(job):
+    """(number, verdict, the case that noticed, how many cases ran, seconds)"""
+    number, section, sanitized = job
+    ran, verdict, begin = 0, "unreached", time.time()
+    mine = sorted((used * (0.1 if section in sections else 1), used, program, case)
+                  for used, program, case, hits, sections in UNITS if number in hits)
+    for san in [False, True] if sanitized else [False]:
+        for _, used, program, case in mine:
+            ran += 1
+            well, _, _ = run_unit((program, case), mutant=number, seconds=(20 if san else 4) * used + 2, sanitized=san)
+            if not well: return number, "killed", f"{program} {case or ''}".strip(), ran, time.time() - begin
+            verdict = "survived"
+    return number, verdict, "", ran, time.time() - begin
 
 
-def build(programs, sanitized):
+def build(programs, sanitized, jobs):
     targets = ["build/" + p for p in programs if not p.endswith(".sh")] + ["build/tool"]
     targets += [t + ".san" for t in targets] if sanitized else []
-    run = subprocess.run(["make", "-C", os.path.join(TREE, "tests"), "-s", "-k", "CFLAGS=-O1 -g0", "WARNINGS=-w"] + targets,
+    run = subprocess.run(["make", "-C", os.path.join(TREE, "tests"), "-s", "-k", f"-j{jobs}", "CFLAGS=-O1 -g0", "WARNINGS=-w"] + targets,
                          env={k: v for k, v in os.environ.items() if k not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL", "TESTS", "TEST")})
     if run.returncode: sys.exit("mutants: the copy does not compile")
 
 
 def read_equivalent():
-    """mutants.txt: function | old | new | reason."""
+    """mutants.txt: function | old | new | reason; or function | (kind) | * | reason, for numbers that are tuned."""
     path, answer = os.path.join(HERE, "mutants.txt"), {}
     if os.path.exists(path):
         for line in open(path):
@@ -612,24 +634,27 @@ def report(mutants, results):
     for m, r in zip(mutants, results):
         if r is None: continue
         verdict = r["verdict"]
-        if verdict != "killed" and (m["function"], m["old"], m["new"] or "nothing") in equivalent: verdict = "equivalent"
+        if verdict != "killed":
+            if (m["function"], m["old"], m["new"] or "nothing") in equivalent: verdict = "equivalent"
+            elif (m["function"], f"({m['kind']})", "*") in equivalent: verdict = "tuned"
         if verdict in ("survived", "unreached"): print(f"{verdict}: {m['number']}: {one_line(m)}")
         if m["section"] not in rows:
             rows[m["section"]] = {}
             order.append(m["section"])
         rows[m["section"]][verdict] = rows[m["section"]].get(verdict, 0) + 1
-    names = ["killed", "survived", "unreached", "equivalent"]
+    names = ["killed", "survived", "unreached", "equivalent", "tuned"]
     total = {n: sum(row.get(n, 0) for row in rows.values()) for n in names}
     for section in order + ["all"]:
         row = rows.get(section, total)
         print(f"{section:14}" + "".join(f"{row.get(n, 0):5} {n}" for n in names))
-    of = sum(total.values()) - total["equivalent"]
+    of = sum(total.values()) - total["equivalent"] - total["tuned"]
     print(f"mutants: {total['killed']} of {of} killed ({100 * total['killed'] / max(of, 1):.1f} %)")
 
 
 def prepare(source, options):
     """The chosen mutants; those of the last run if it was asked for the same."""
-    with open(os.path.abspath(__file__), "rb") as f: own = hashlib.sha256(f.read().split(b"# ---- running")[0]).hexdigest()
+    with open(os.path.abspath(__file__), "rb") as f:
+        own = hashlib.sha256(re.search(b"# ---- the header as tokens.*?# ---- running", f.read(), re.S).group()).hexdigest()
     key = [hashlib.sha256(source.encode()).hexdigest(), own, options.number, options.seed, options.section]
     path = os.path.join(WORK, "mutants.json")
     if os.path.exists(path):
@@ -657,35 +682,38 @@ def main():
     parser.add_argument("--again", action="store_true")
     parser.add_argument("--sanitized", action="store_true")
     parser.add_argument("--only", default="")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--report", action="store_true")
     options = parser.parse_args()
     os.makedirs(WORK, exist_ok=True)
     make_tree()
     with open(os.path.join(ROOT, "guidedproj.h")) as f: source = f.read()
     mutants = prepare(source, options)
-    programs = sorted(n[:-2] for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.c", n))
-    programs += sorted(n for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.sh", n))
-    print(f"mutants: {len(mutants)} chosen; compiles", flush=True)
-    build(programs, options.sanitized)
-    units = measure(programs, len(mutants))
     results, path = [None] * len(mutants), os.path.join(WORK, "results.jsonl")
     if os.path.exists(path):
         for line in open(path):
             r = json.loads(line)
             results[r["number"]] = r
+    if options.report: return report(mutants, results)
+    programs = sorted(n[:-2] for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.c", n))
+    programs += sorted(n for n in os.listdir(HERE) if re.fullmatch(r"test_\w+\.sh", n) and n != "test_web.sh")
+    print(f"mutants: {len(mutants)} chosen; compiles", flush=True)
+    build(programs, options.sanitized, options.jobs)
+    global UNITS
+    UNITS = measure(programs, len(mutants), options.jobs)
     only = {int(n) for n in options.only.split(",") if n}
-    print(f"mutants: {len(units)} cases, {sum(u[0] for u in units):.0f} s of them", flush=True)
+    print(f"mutants: {len(UNITS)} cases, {sum(u[0] for u in UNITS):.0f} s of them", flush=True)
     # In the order of a shuffle, so that a run that is stopped tells of all sections.
     order = list(range(len(mutants)))
     random.Random(options.seed).shuffle(order)
-    for number in order:
-        r, begin = results[number], time.time()
-        if only and number not in only: continue
-        if r and not only and (r["verdict"] == "killed" or not options.again): continue
-        verdict, by, ran = try_mutant(number, units, False)
-        if verdict == "survived" and options.sanitized: verdict, by, ran = try_mutant(number, units, True)
-        results[number] = dict(number=number, verdict=verdict, by=by, ran=ran)
-        with open(path, "a") as f: f.write(json.dumps(results[number]) + "\n")
-        print(f"{verdict} {number} ({by or ran}, {time.time() - begin:.1f} s): {one_line(mutants[number])}", flush=True)
+    done = lambda r: r and not only and (r["verdict"] == "killed" or not options.again)
+    todo = [(n, mutants[n]["section"], options.sanitized) for n in order if (not only or n in only) and not done(results[n])]
+    with multiprocessing.Pool(options.jobs) as pool, open(path, "a") as f:
+        for number, verdict, by, ran, seconds in pool.imap_unordered(try_mutant, todo):
+            results[number] = dict(number=number, verdict=verdict, by=by, ran=ran)
+            f.write(json.dumps(results[number]) + "\n")
+            f.flush()
+            print(f"{verdict} {number} ({by or ran}, {seconds:.1f} s): {one_line(mutants[number])}", flush=True)
     report(mutants, results)
 
 

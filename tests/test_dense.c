@@ -321,7 +321,34 @@ GPROJT_TEST(dense_columns_of_panels) {
         }
 }
 
+/* -- 3 x 3 -- */
+
+/* (a + shift trace(a) I) x = b for sums of squares, and no answer for matrices that are not positive definite. */
+GPROJT_TEST(symmetric_3x3) {
+    static const double indefinite[4][6] = {
+        {0, 0, 0, 0, 0, 0}, {1, 2, 0, 1, 0, 1}, {1, 0, 0, 1, 2, 1}, {-1, 0, 0, 1, 0, 1}};
+    double e[3], b[3], x[3], shift;
+    uint64_t seed = 6;
+    int32_t round, i, k;
+    for (round = 0; round < 50; ++round) {
+        double a[6] = {0}, trace;
+        for (k = 0; k < 4; ++k) {
+            for (i = 0; i < 3; ++i) e[i] = 2 * gprojt_uniform(&seed) - 1;
+            gproji_add_square3(e, a);
+        }
+        for (i = 0; i < 3; ++i) b[i] = 2 * gprojt_uniform(&seed) - 1;
+        shift = round % 2 * gprojt_uniform(&seed);
+        trace = shift * (a[0] + a[3] + a[5]);
+        GPROJT_REQUIRE(gproji_solve_square3(a, shift, b, x));
+        GPROJT_NEAR((a[0] + trace) * x[0] + a[1] * x[1] + a[2] * x[2], b[0], 1e-9);
+        GPROJT_NEAR(a[1] * x[0] + (a[3] + trace) * x[1] + a[4] * x[2], b[1], 1e-9);
+        GPROJT_NEAR(a[2] * x[0] + a[4] * x[1] + (a[5] + trace) * x[2], b[2], 1e-9);
+    }
+    for (k = 0; k < 4; ++k) GPROJT_CHECK(!gproji_solve_square3(indefinite[k], 0, b, x));
+}
+
 int main(void) {
+    GPROJT_RUN(symmetric_3x3);
     GPROJT_RUN(dense_tiles);
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);

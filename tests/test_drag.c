@@ -625,6 +625,7 @@ static void gprojt_check_refusal(gproj_form *form, const gproj_handles *handles,
     gproj_error error;
     gproj_drag *drag = gproj_drag_begin(form, handles, options, &error);
     GPROJT_CHECK(!drag && error.code == code && strstr(error.message, words));
+    GPROJT_CHECK((error.place == GPROJ_PLACE_NONE) == (error.index == -1));
     if (!drag && !strstr(error.message, words)) printf("  '%s' is not '%s'\n", error.message, words);
 }
 

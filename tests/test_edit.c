@@ -734,6 +734,45 @@ GPROJT_TEST(triangles_are_the_best) {
     }
 }
 
+/* Polygons that cross themselves need triangles turned over: cost 1 / x with x = 2 area / (a^2 + b^2 + c^2) goes on below
+   1e-6 by its tangent, so that the least turned are taken. */
+static double gprojt_turned_cost(const double *xy, int32_t a, int32_t b, int32_t c) {
+    double x = 1 / gprojt_cost(xy, a, b, c), least = 1e-6;
+    return x >= least ? 1 / x : 1 / least - (x - least) / (least * least);
+}
+static double gprojt_least_turned_cost(const double *xy, int32_t first, int32_t last) {
+    double least = last < first + 2 ? 0 : HUGE_VAL;
+    int32_t k;
+    for (k = first + 1; k < last; ++k)
+        least = fmin(least, gprojt_turned_cost(xy, first, k, last) + gprojt_least_turned_cost(xy, first, k) +
+                                gprojt_least_turned_cost(xy, k, last));
+    return least;
+}
+GPROJT_TEST(triangles_are_turned_least) {
+    uint64_t state = 5;
+    int32_t round, turned = 0;
+    for (round = 0; round < 60; ++round) {
+        double xy[16], sum = 0, area = 0, sign;
+        int32_t n = 5 + round % 4, i, f, h;
+        gproj_edit *e;
+        for (i = 0; i < 2 * n; ++i) xy[i] = gprojt_uniform(&state);
+        for (i = 0; i < n; ++i) area += xy[2 * i] * xy[2 * ((i + 1) % n) + 1] - xy[2 * ((i + 1) % n)] * xy[2 * i + 1];
+        if (fabs(area) < 0.1) continue;
+        e = gprojt_polygon_edit(n, xy);
+        GPROJT_CHECK(gproj_edit_triangulate(e, -1, NULL) == n - 3);
+        sign = area < 0 ? -1 : 1; /* seen from where it turns left */
+        for (i = 0; i < n; ++i) xy[2 * i] *= sign;
+        for (f = 0; f < e->face_count; ++f) {
+            h = e->face_halfedge[f];
+            sum += gprojt_turned_cost(xy, e->origin[h], e->origin[e->next[h]], e->origin[e->prev[h]]);
+        }
+        GPROJT_NEAR(sum, gprojt_least_turned_cost(xy, 0, n - 1), 1e-9 * sum);
+        turned += sum > 1e6;
+        gproj_edit_destroy(e);
+    }
+    GPROJT_CHECK(turned > 20);
+}
+
 /* The torus of 7 vertices (Moebius 1861): each two have an edge, so a face that was joined from its triangles can only
    be cut as it was. */
 GPROJT_TEST(diagonals_that_are_edges) {
@@ -996,7 +1035,12 @@ GPROJT_TEST(what_would_be_no_mesh_is_refused) {
     gproj_edit_destroy(e);
     /* two quads back to back: strips of two quads */
     e = gprojt_edit_of(4, 2, quads, pillow);
-    GPROJT_CHECK(gproj_edit_insert_strip(e, 0, 0.5, &error) == -1 && strstr(error.message, "in common, too"));
+    for (edge = 0; edge < e->edge_count; ++edge) { /* the quads' other common edge is the opposite one */
+        char piece[80];
+        snprintf(piece, sizeof piece, "edge %d: its two quads have edge %d in common, too", (int)edge,
+                 (int)e->next[e->next[2 * edge]] / 2);
+        GPROJT_REFUSED(gproj_edit_insert_strip(e, edge, 0.5, &error), NON_MANIFOLD, EDGE, edge, piece);
+    }
     GPROJT_CHECK(gproj_edit_remove_strip(e, 0, 0.5, &error) == -1 &&
                  strstr(error.message, "the strip of edge 0 stays: "));
     GPROJT_CHECK(gproj_edit_triangulate(e, -1, &error) == 2); /* with different diagonals: a tetrahedron */
@@ -1093,6 +1137,7 @@ int main(void) {
     GPROJT_RUN(polygons_that_are_not_convex);
     GPROJT_RUN(combs_spirals_darts);
     GPROJT_RUN(triangles_are_the_best);
+    GPROJT_RUN(triangles_are_turned_least);
     GPROJT_RUN(diagonals_that_are_edges);
     GPROJT_RUN(dual_of_the_dual);
     GPROJT_RUN(dual_with_boundary);

@@ -506,6 +506,83 @@ GPROJT_TEST(variants_differ) {
     gproj_mesh_destroy(mesh);
 }
 
+/* More corners than a patch has: the polygon is cut, though none of them is reflex. */
+GPROJT_TEST(many_convex_corners_are_cut) {
+    int32_t corners, i;
+    for (corners = 7; corners <= 12; ++corners) {
+        gprojt_curve c = gprojt_rose(corners, 12, 0);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        for (i = 0; i < corners; ++i) c.edges[i] = 6;
+        c.given = true;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.patch_count > 1);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Opposite sides about as long as each other get equal numbers of edges, so that a grid fits between them. */
+GPROJT_TEST(opposite_sides_get_equal_numbers) {
+    static const double wide[] = {0, 0, 10, 0, 8.5, 6, 1.5, 6}, steep[] = {0, 0, 20, 0, 15, 6, 5, 6};
+    int32_t k, turn, i, count[4];
+    for (k = 0; k < 2; ++k)
+        for (turn = 0; turn < 4; ++turn) {
+            double xy[8];
+            gprojt_curve c;
+            gproj_fill_info info;
+            gproj_mesh *mesh;
+            for (i = 0; i < 8; ++i) xy[i] = (k ? steep : wide)[(i + 2 * turn) % 8];
+            c = gprojt_polygon(4, xy);
+            c.options.edge_length = 1;
+            mesh = gprojt_fill(&c, &info, NULL);
+            GPROJT_REQUIRE(mesh && mesh->polyline_count == 4);
+            for (i = 0; i < 4; ++i) count[i] = mesh->polyline_start[i + 1] - mesh->polyline_start[i] - 1;
+            GPROJT_CHECK(count[turn % 2 + 1] == count[(turn % 2 + 3) % 4]);     /* the legs */
+            GPROJT_CHECK((count[turn % 2] == count[turn % 2 + 2]) == (k == 0)); /* 10 and 7; 20 and 10 */
+            GPROJT_CHECK(k || (count[turn % 2] >= 8 && count[turn % 2] <= 9));
+            GPROJT_CHECK(k || info.irregular_count == 0);
+            for (i = 0; i < 4; ++i) GPROJT_CHECK(k == 0 || fabs(count[i] - gprojt_curve_length(&c, i, i + 1)) <= 1);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
+/* Of all sides with one edge more or less, the one is named whose edges are then nearest to the wanted length. */
+GPROJT_TEST(the_best_change_is_named) {
+    uint64_t state = 3;
+    int32_t tries, less = 0, odd = 0;
+    for (tries = 0; tries < 200; ++tries) {
+        gprojt_curve c = gprojt_random_curve(&state, 3 + gprojt_below(&state, 4), 0);
+        gproj_error error;
+        gproj_mesh *mesh;
+        int32_t side, by, named = -1, to = 0, given;
+        double best = HUGE_VAL, off, named_off = HUGE_VAL;
+        c.options.edge_length = 2;
+        if (gprojt_random_edges(&c, 2, &state) % 2 == 0) continue;
+        mesh = gprojt_fill(&c, NULL, &error);
+        GPROJT_CHECK(mesh == NULL);
+        gproj_mesh_destroy(mesh);
+        if (strstr(error.message, "meets itself")) continue;
+        GPROJT_REQUIRE(strstr(error.message, "give side "));
+        GPROJT_CHECK(sscanf(strstr(error.message, "give side "), "give side %d %d edges instead of %d", &named, &to,
+                            &given) == 3);
+        GPROJT_REQUIRE(named >= 0 && named < c.corner_count);
+        GPROJT_CHECK(given == c.edges[named] && abs(to - given) == 1 && error.index == c.corner[named]);
+        for (side = 0; side < c.corner_count; ++side)
+            for (by = -1; by <= 1; by += 2) {
+                if (c.edges[side] + by < 1) continue;
+                off = fabs(log((c.edges[side] + by) * 2 / gprojt_curve_side(&c, side)));
+                best = fmin(best, off);
+                if (side == named && c.edges[side] + by == to) named_off = off;
+            }
+        if (!(named_off <= best + 1e-12)) printf("  %g %g\n", named_off, best);
+        GPROJT_CHECK(named_off <= best + 1e-12);
+        less += to < given, ++odd;
+    }
+    GPROJT_CHECK(less > odd / 5 && less < odd);
+}
+
 /* -- in space -- */
 
 /* A curve over another plane than z = 0, in another unit: the same mesh, moved. */
@@ -597,6 +674,7 @@ GPROJT_TEST(refusals_of_curves) {
     gproj_fill_info info;
     gproj_error error;
     gproj_mesh *mesh;
+    int32_t i, k;
     GPROJT_CHECK(
         gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "after point 0 and after point 2"));
     c = gprojt_polygon(5, back);
@@ -612,6 +690,19 @@ GPROJT_TEST(refusals_of_curves) {
     c.corner_count = 4, c.marked = c.given = true;
     GPROJT_CHECK(
         gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "with so few edges side 0 meets side 2"));
+    for (k = 0; k < 4; ++k) { /* whichever side comes first */
+        gprojt_curve turned = c;
+        char expected[80];
+        for (i = 0; i < 6; ++i)
+            memcpy(turned.point + 3 * i, c.point + 3 * ((i + deep_corner[k]) % 6), 3 * sizeof(double));
+        for (i = 0; i < 4; ++i) {
+            turned.corner[i] = (deep_corner[(i + k) % 4] - deep_corner[k] + 6) % 6;
+            turned.edges[i] = deep_edges[(i + k) % 4];
+        }
+        snprintf(expected, sizeof expected, "with so few edges side %d meets side %d;", k % 2, k % 2 + 2);
+        GPROJT_CHECK(
+            gprojt_is_refused(&turned, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, turned.corner[k % 2], expected));
+    }
     c.edges[0] = c.edges[3] = 2;
     c.edges[1] = 2;
     mesh = gprojt_fill(&c, &info, NULL);
@@ -639,6 +730,8 @@ GPROJT_TEST(refusals_of_options) {
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "ascending order"));
     c.corner[2] = 12;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, 12, "the points are 0 to 11"));
+    c = good, c.corner[0] = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, -1, "corner 0 is point -1"));
     c = good, c.corner_count = 1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "1 corners; give at least 2"));
     c = good, c.marked = false, c.options.corner_count = 3;
@@ -762,6 +855,12 @@ GPROJT_TEST(every_allocation_fails_once) {
     gprojt_curve c = gprojt_polygon(6, L);
     c.options.edge_length = 1.5;
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c.options.edge_length = 0.75; /* longer lists, which grow elsewhere */
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_rose(4, 8, 0.1); /* a pattern with rows */
+    c.edges[0] = 14, c.edges[1] = 3, c.edges[2] = 2, c.edges[3] = 3;
+    c.given = true;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
     c = gprojt_rose(3, 4, 0.1);
     c.edges[0] = 4, c.edges[1] = 2, c.edges[2] = 2;
     c.given = true;
@@ -782,6 +881,9 @@ int main(void) {
     GPROJT_RUN(rings);
     GPROJT_RUN(single_quads);
     GPROJT_RUN(variants_differ);
+    GPROJT_RUN(many_convex_corners_are_cut);
+    GPROJT_RUN(opposite_sides_get_equal_numbers);
+    GPROJT_RUN(the_best_change_is_named);
     GPROJT_RUN(anywhere_in_space);
     GPROJT_RUN(heights_are_harmonic);
     GPROJT_RUN(orientation_is_that_of_the_curve);

@@ -2179,8 +2179,10 @@ GPROJT_TEST(verdict_names_what_fights) {
 static void gprojt_add_all(gproj_form *form, void *user) {
     int builder;
     for (builder = 0; builder < GPROJT_BUILDERS; ++builder)
-        if (builder != GPROJT_GLIDING && builder != GPROJT_FIXED_BOUNDARY)
-            gprojt_build(form, builder, (const gprojt_props *)user, 0.3);
+        if (builder != GPROJT_GLIDING && builder != GPROJT_FIXED_BOUNDARY) {
+            int32_t group = gprojt_build(form, builder, (const gprojt_props *)user, 0.3);
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK ? group >= 0 : group == -1);
+        }
 }
 
 /* Planarity alone: the default guidance and the guard take their memory in the solve. */
@@ -2199,6 +2201,15 @@ GPROJT_TEST(every_allocation_fails_once) {
         gprojt_give_props(&props);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* The same on a mesh with longer lists, which grow in all builders. */
+GPROJT_TEST(every_allocation_of_builders_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(2, 7, 0.02, 6);
+    gprojt_props props = gprojt_take_props(mesh);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_all, &props, 0, NULL) >= 100);
+    gprojt_give_props(&props);
+    gproj_mesh_destroy(mesh);
 }
 
 GPROJT_TEST(no_allocation_in_a_second_solve) {
@@ -2312,6 +2323,7 @@ int main(void) {
     GPROJT_RUN(own_rows_units_and_cancelling);
     GPROJT_RUN(verdict_names_what_fights);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(every_allocation_of_builders_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
     GPROJT_RUN(beyond_all_coordinates);
     return gprojt_report();

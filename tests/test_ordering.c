@@ -442,6 +442,313 @@ GPROJT_TEST(dissection_separates) {
     }
 }
 
+/* -- inside a part: against plain searches -- */
+
+/* The parts of a dissection are opened here as gproji_nd_next does, but not cut. */
+static void open_part(gproji_nd *nd, const gproji_nd_part *part) {
+    const gproji_nd_nodes *c = &nd->copy[part->copy];
+    gproji_nd_nodes *here = &nd->here;
+    gproji_nd_halo *halo = &nd->halo;
+    int32_t i, k, at;
+    *here = *c;
+    here->name += part->first, here->weight += part->first, here->from += part->first, here->inner += part->first;
+    here->outer += part->first, here->x += part->first, here->y += part->first;
+    nd->nodes = part->nodes, nd->weight = 0;
+    halo->boundaries = halo->count = 0, halo->weight = 0;
+    for (i = 0; i < part->nodes; ++i) {
+        int32_t *list = here->adjacent + here->from[i] + here->inner[i];
+        nd->weight += here->weight[i];
+        if (here->outer[i]) halo->boundary[halo->boundaries++] = i;
+        for (k = 0; k < here->outer[i]; ++k) {
+            for (at = 0; at < halo->count && halo->name[at] != list[k];) ++at;
+            if (at == halo->count) {
+                halo->name[halo->count++] = list[k];
+                halo->weight += nd->graph->weight[list[k]];
+            }
+            list[k] = at;
+        }
+    }
+}
+
+/* Gives the neighbours in the halo their names again. */
+static void close_part(gproji_nd *nd) {
+    int32_t i, k;
+    for (i = 0; i < nd->nodes; ++i)
+        for (k = 0; k < nd->here.outer[i]; ++k) {
+            int32_t *name = &nd->here.adjacent[nd->here.from[i] + nd->here.inner[i] + k];
+            *name = nd->halo.name[*name];
+        }
+}
+
+/* Weights by sides: of nodes (2: the separator), and of the halo next to sides 0 and 1. False if sides 0 and 1 touch. */
+static bool weigh_sides(const gproji_nd *nd, const unsigned char *side, double weight[3], double beside[2]) {
+    int32_t i, k, s;
+    weight[0] = weight[1] = weight[2] = beside[0] = beside[1] = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        weight[side[i]] += nd->here.weight[i];
+        for (k = 0; k < nd->here.inner[i]; ++k)
+            if (side[i] + side[nd->here.adjacent[nd->here.from[i] + k]] == 1) return false;
+    }
+    for (s = 0; s < 2; ++s) {
+        unsigned char *seen = (unsigned char *)calloc((size_t)nd->halo.count + 1, 1);
+        for (i = 0; i < nd->nodes; ++i)
+            for (k = 0; k < nd->here.outer[i] && side[i] == s; ++k) {
+                int32_t at = nd->here.adjacent[nd->here.from[i] + nd->here.inner[i] + k];
+                if (!seen[at]) beside[s] += nd->graph->weight[nd->halo.name[at]];
+                seen[at] = 1;
+            }
+        free(seen);
+    }
+    return true;
+}
+
+/* One more unit of flow from the source to the sink, on a matrix of residual capacities. */
+static bool augment(int32_t states, int32_t *room, int32_t *from, int32_t *queue) {
+    int32_t head = 0, tail = 0, a, b;
+    for (a = 0; a < states; ++a) from[a] = -1;
+    queue[tail++] = 0, from[0] = 0;
+    while (head < tail && from[1] < 0)
+        for (a = queue[head++], b = 0; b < states; ++b)
+            if (from[b] < 0 && room[a * states + b] > 0) from[b] = a, queue[tail++] = b;
+    if (from[1] < 0) return false;
+    for (b = 1; b != 0; b = a) a = from[b], room[a * states + b]--, room[b * states + a]++;
+    return true;
+}
+
+/* The least weight of nodes in the band that separate its ends, in units: the largest flow. */
+static int32_t largest_flow(const gproji_band *band) {
+    int32_t states = 2 + 2 * band->nodes, i, c, flow = 0, enough = 1 << 20;
+    int32_t *room = (int32_t *)calloc((size_t)states * (size_t)states, sizeof(int32_t));
+    int32_t *from = (int32_t *)malloc(2 * (size_t)states * sizeof(int32_t));
+    for (i = 0; i < band->nodes; ++i) {
+        int32_t in = 2 + 2 * i, out = in + 1;
+        room[in * states + out] = band->unit[i + 1] - band->unit[i];
+        if (band->ends[i] & GPROJI_BAND_SOURCE) room[in] = enough;
+        if (band->ends[i] & GPROJI_BAND_SINK) room[out * states + 1] = enough;
+        for (c = band->start[i]; c < band->start[i + 1]; ++c) room[out * states + 2 + 2 * band->to[c]] = enough;
+    }
+    while (augment(states, room, from, from + states)) ++flow;
+    free(room), free(from);
+    return flow;
+}
+
+/* A random network, in one block of zeros: nodes at the source, nodes at the sink, capacities from 1 to 3. */
+static gproji_band random_band(uint64_t *seed, int32_t *block) {
+    gproji_band band;
+    int32_t n = 3 + gprojt_below(seed, 20), arcs = n + gprojt_below(seed, 3 * n), i, k, e = 0;
+    static bool near[32][32];
+    memset(&band, 0, sizeof band), memset(near, 0, sizeof near), memset(block, 0, 4000 * sizeof *block);
+    for (k = 0; k < arcs; ++k) {
+        int32_t a = gprojt_below(seed, n), b = gprojt_below(seed, n);
+        near[a][b] = near[b][a] = a != b;
+    }
+    band.nodes = n;
+    band.start = block, band.unit = block + 100, band.load = block + 200, band.level = block + 300;
+    band.turn = block + 400, band.queue = block + 500, band.origin = block + 700, band.to = block + 900;
+    band.ends = (unsigned char *)(block + 3000), band.mark = band.ends + 100;
+    for (i = 0; i < n; ++i) {
+        band.start[i] = e;
+        for (k = 0; k < n; ++k)
+            if (near[i][k]) band.to[e++] = k;
+        band.unit[i + 1] = band.unit[i] + 1 + gprojt_below(seed, 3);
+        if (i < 1 + n / 6) band.ends[i] |= GPROJI_BAND_SOURCE;
+        if (i >= n - 1 - n / 6) band.ends[i] |= GPROJI_BAND_SINK;
+    }
+    band.start[n] = e;
+    return band;
+}
+
+/* Flows of the largest size, which keep to capacities and arcs, and lose nothing on the way. */
+GPROJT_TEST(dissection_flows) {
+    static int32_t block[4000];
+    uint64_t seed = 2;
+    int32_t tries, i, c, k;
+    for (tries = 0; tries < 2000; ++tries) {
+        gproji_band band = random_band(&seed, block);
+        int32_t flow = 0, out[32] = {0};
+        while (gproji_band_augment(&band)) continue;
+        for (i = 0; i < band.nodes; ++i) {
+            GPROJT_CHECK(band.load[i] >= 0 && band.load[i] <= band.unit[i + 1] - band.unit[i]);
+            for (c = band.unit[i]; c < band.unit[i] + band.load[i]; ++c) {
+                bool arc = band.origin[c] < 0 && (band.ends[i] & GPROJI_BAND_SOURCE);
+                for (k = band.start[i]; k < band.start[i + 1]; ++k) arc |= band.to[k] == band.origin[c];
+                GPROJT_CHECK(arc);
+                if (band.origin[c] < 0)
+                    ++flow;
+                else
+                    ++out[band.origin[c]];
+            }
+        }
+        for (i = 0; i < band.nodes; ++i)
+            GPROJT_CHECK(band.ends[i] & GPROJI_BAND_SINK ? out[i] <= band.load[i] : out[i] == band.load[i]);
+        GPROJT_CHECK(flow == largest_flow(&band));
+    }
+}
+
+/* Whole units, exact if they are few. */
+GPROJT_TEST(dissection_capacities) {
+    int32_t divisor, largest, weight;
+    for (divisor = 1; divisor < 40; ++divisor)
+        for (largest = divisor; largest < 900; largest += divisor)
+            for (weight = divisor; weight <= largest; weight += divisor) {
+                int32_t units = gproji_band_capacity(weight, divisor, largest);
+                if (largest <= GPROJI_BAND_UNITS * divisor)
+                    GPROJT_CHECK(units * divisor == weight);
+                else
+                    GPROJT_CHECK(units >= 1 && units <= GPROJI_BAND_UNITS &&
+                                 fabs(units - (double)weight * GPROJI_BAND_UNITS / largest) <= 1);
+            }
+}
+
+/* The cut that was chosen: its weights are those counted here, and no separator in its band is lighter. */
+static void check_cut(gproji_nd *nd, gproji_nd_cut *cut, unsigned char *side) {
+    bool exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
+    double below = 0, low = 0, high = 0, weight[3], beside[2], cost;
+    int32_t i, k, units = 0;
+    for (i = 0; i < nd->nodes; ++i) {
+        bool lower = cut->coordinate[i] < cut->at, meets = false;
+        for (k = 0; k < nd->here.inner[i]; ++k)
+            meets |= (cut->coordinate[nd->here.adjacent[nd->here.from[i] + k]] < cut->at) != lower;
+        below += lower ? nd->here.weight[i] : 0;
+        *(lower ? &low : &high) += meets ? nd->here.weight[i] : 0;
+    }
+    GPROJT_NEAR(cut->below, below, 0);
+    if (exact) {
+        double s = fmin(low, high);
+        GPROJT_NEAR(cut->separator, s, 0);
+        for (i = 0; i < nd->nodes; ++i) side[i] = cut->coordinate[i] >= cut->at;
+        for (i = 0; i < nd->halo.count; ++i) nd->number[i] = 0; /* sides next to the halo, as bits */
+        beside[0] = beside[1] = 0;
+        for (i = 0; i < nd->halo.boundaries; ++i) {
+            int32_t v = nd->halo.boundary[i];
+            for (k = 0; k < nd->here.outer[v]; ++k)
+                nd->number[nd->here.adjacent[nd->here.from[v] + nd->here.inner[v] + k]] |= 1 << side[v];
+        }
+        for (i = 0; i < nd->halo.count; ++i)
+            for (k = 0; k < 2; ++k)
+                if (nd->number[i] >> k & 1) beside[k] += nd->graph->weight[nd->halo.name[i]];
+        GPROJT_NEAR(cut->cost, gproji_nd_cost(nd, below - s / 2, nd->weight - below - s / 2, s, beside), 0);
+    }
+    cost = gproji_nd_separate(nd, cut, side);
+    GPROJT_CHECK(cost < HUGE_VAL && weigh_sides(nd, side, weight, beside));
+    GPROJT_NEAR(cost, gproji_nd_cost(nd, weight[0], weight[1], weight[2], beside), 0);
+    for (i = 0; i < nd->band.nodes; ++i)
+        if (side[nd->band.id[i]] == 2) units += nd->band.unit[i + 1] - nd->band.unit[i];
+    if (nd->band.nodes < 120) GPROJT_CHECK(units == largest_flow(&nd->band));
+}
+
+GPROJT_TEST(dissection_weighs_and_separates) {
+    static const int32_t kinds[] = {GRID, TORUS, TRIANGLES, HEXAGONS, SHUFFLED, FORCES, STRIP};
+    int32_t k, cuts = 0, small = 0;
+    for (k = 0; k < (int32_t)(sizeof kinds / sizeof kinds[0]); ++k) {
+        graph g = make(kinds[k], 1500);
+        gproji_heap heap = gproji_heap_of(NULL);
+        unsigned char *side = (unsigned char *)malloc((size_t)g.nodes);
+        gproji_pool pool;
+        gproji_nd nd;
+        memset(&nd, 0, sizeof nd);
+        nd.heap = &heap, nd.graph = &g.view;
+        gproji_pool_start(&pool, &heap);
+        GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
+        gproji_nd_begin(&nd, g.total);
+        while (nd.parts > 0) {
+            const gproji_nd_part part = nd.stack[nd.parts - 1];
+            gproji_nd_cut cut = {HUGE_VAL, 0, 0, 0, 0, 0, NULL, NULL};
+            if (part.nodes > GPROJI_ND_LEAF) {
+                open_part(&nd, &part);
+                if (gproji_nd_find_cut(&nd, &cut) == nd.nodes && cut.cost < HUGE_VAL) {
+                    check_cut(&nd, &cut, side);
+                    ++cuts, small += nd.band.nodes < 120;
+                }
+                close_part(&nd);
+            }
+            gproji_nd_next(&nd);
+        }
+        gproji_give(&heap, nd.band.block, nd.band.block_size, 1);
+        gproji_pool_give_all(&pool);
+        free(side), graph_free(&g);
+    }
+    GPROJT_CHECK(cuts > 100 && small > 50);
+}
+
+/* Small parts with halos: at each step the node of least degree, by weights and halo included, the first of equal ones. */
+GPROJT_TEST(dissection_orders_leaves) {
+    int32_t tries, n, i, j, k;
+    uint64_t seed = 4;
+    for (tries = 0; tries < 60; ++tries) {
+        int32_t nodes = 2 + gprojt_below(&seed, GPROJI_ND_LEAF - 1), halos = gprojt_below(&seed, 150);
+        graph g = graph_of(nodes + halos);
+        static bool near[GPROJI_ND_LEAF + 150][GPROJI_ND_LEAF + 150];
+        int32_t *part_of, order[GPROJI_ND_LEAF], edges = 3 * nodes;
+        gproji_heap heap = gproji_heap_of(NULL);
+        gproji_pool pool;
+        gproji_nd nd;
+        gproji_nd_part part;
+        bool alive[GPROJI_ND_LEAF];
+        memset(near, 0, sizeof near);
+        for (k = 0; k < edges; ++k) {
+            i = gprojt_below(&seed, nodes), j = gprojt_below(&seed, nodes + halos);
+            graph_edge(&g, i, j);
+            near[i][j] = near[j][i] = i != j;
+        }
+        n = g.nodes;
+        graph_finish(&g, 1);
+        for (i = 0; i < n; ++i) g.weight[i] = tries % 2 ? 1 + gprojt_below(&seed, 300) : 3;
+        graph_weigh(&g);
+        memset(&nd, 0, sizeof nd);
+        nd.heap = &heap, nd.graph = &g.view;
+        gproji_pool_start(&pool, &heap);
+        GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
+        /* The part is the first `nodes`, in the order of their names. */
+        part_of = nd.copy[0].name;
+        for (i = 0; i < nodes; ++i) {
+            int64_t e;
+            part_of[i] = i, nd.copy[0].weight[i] = g.weight[i], nd.copy[0].from[i] = g.start[i];
+            nd.copy[0].inner[i] = nd.copy[0].outer[i] = 0;
+            for (e = g.start[i]; e < g.start[i + 1]; ++e)
+                if (g.adjacent[e] < nodes) nd.copy[0].adjacent[g.start[i] + nd.copy[0].inner[i]++] = g.adjacent[e];
+            for (e = g.start[i]; e < g.start[i + 1]; ++e)
+                if (g.adjacent[e] >= nodes)
+                    nd.copy[0].adjacent[g.start[i] + nd.copy[0].inner[i] + nd.copy[0].outer[i]++] = g.adjacent[e];
+        }
+        memset(&part, 0, sizeof part);
+        part.nodes = nodes;
+        nd.stack[0] = part, nd.parts = 1, nd.kept = nodes, nd.unit = 1;
+        gproji_nd_next(&nd);
+        GPROJT_CHECK(nd.parts == 0 && is_permutation(nodes, nd.order));
+        memcpy(order, nd.order, (size_t)nodes * sizeof *order);
+        for (i = 0; i < nodes; ++i) alive[i] = true;
+        for (k = 0; k < nodes; ++k) {
+            int32_t best = -1;
+            int64_t least = INT64_MAX;
+            for (i = 0; i < nodes; ++i) {
+                int64_t degree = 0;
+                for (j = 0; j < n; ++j) degree += alive[i] && near[i][j] && (j >= nodes || alive[j]) ? g.weight[j] : 0;
+                if (alive[i] && degree < least) least = degree, best = i;
+            }
+            GPROJT_CHECK(order[k] == best);
+            alive[best] = false;
+            for (i = 0; i < nodes; ++i)
+                for (j = 0; j < n && near[best][i]; ++j) near[i][j] |= j != i && near[best][j];
+        }
+        gproji_pool_give_all(&pool);
+        graph_free(&g);
+    }
+}
+
+/* The estimate solves its recursion: a separator of weight s = c sqrt(n) with the halo's rows, then twice a half. */
+GPROJT_TEST(dissection_estimates) {
+    gproji_nd nd;
+    double n, h;
+    memset(&nd, 0, sizeof nd);
+    for (nd.unit = 0.5; nd.unit < 5; nd.unit *= 2)
+        for (n = 100; n < 1e6; n *= 10)
+            for (h = 0; h < 10 * nd.unit * sqrt(n); h += nd.unit * sqrt(n)) {
+                double s = nd.unit * sqrt(n), own = s * h * h + s * s * h + s * s * s / 3;
+                GPROJT_NEAR((own + 2 * gproji_nd_rest(&nd, n / 2, h / 2 + s)) / gproji_nd_rest(&nd, n, h), 1, 0.01);
+            }
+}
+
 /* The first separator of a strip crosses it once; where a line of nodes is lighter, there. */
 GPROJT_TEST(dissection_finds_smallest_separators) {
     int32_t width, light;
@@ -553,6 +860,11 @@ int main(void) {
     GPROJT_RUN(ordering_of_large_graphs);
     GPROJT_RUN(ordering_of_grids);
     GPROJT_RUN(dissection_separates);
+    GPROJT_RUN(dissection_flows);
+    GPROJT_RUN(dissection_capacities);
+    GPROJT_RUN(dissection_weighs_and_separates);
+    GPROJT_RUN(dissection_orders_leaves);
+    GPROJT_RUN(dissection_estimates);
     GPROJT_RUN(dissection_finds_smallest_separators);
     GPROJT_RUN(dissection_leaves_out);
     GPROJT_RUN(ordering_every_allocation_fails);

@@ -268,9 +268,10 @@ GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
     static const char *const words[] = {"neither", "neither",    "neither",    "none of",     "none of",
                                         "3 each",  "1 or more",  "1 or more",  "beyond 1e70", "1e50",
-                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither"};
+                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither",
+                                        "-1 terms", "or no list"};
     int32_t i;
-    for (i = 0; i < 15; ++i) {
+    for (i = 0; i < 17; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t planar = gproj_add_planarity(form, 1), got;
@@ -289,11 +290,55 @@ GPROJT_TEST(wrong_rows_are_refused) {
               : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
               : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
               : i == 9 || i == 11 || i == 12 ? group
+              : i == 15                      ? gproj_form_add_row(form, group, -1, &term, 0, 0)
+              : i == 16                      ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
               : i == 13                      ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
                                              : gproj_form_add_row(form, group, 1, &term, 0, 0);
         if (!strstr(gproj_form_error(form)->message, words[i]))
             printf("  %d: %s\n", i, gproj_form_error(form)->message);
         GPROJT_CHECK(got == -1 && strstr(gproj_form_error(form)->message, words[i]) != NULL);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+GPROJT_TEST(unknowns_refused) {
+    static const double none[3] = {0, 0, 0};
+    gproj_mesh *mesh = gprojt_cap(4, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double value[2];
+    gproj_error error;
+    GPROJT_CHECK(gproj_form_get_unknowns(NULL, 0, 1, value, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 1, NULL, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, -1, value, &error) == GPROJ_ERROR_ARGUMENT && error.index == -1);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, -1, 1, value, &error) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 3 * mesh->vertex_count - 1, 2, value, &error) == GPROJ_ERROR_INDEX &&
+                 error.place == GPROJ_PLACE_VARIABLE && error.index == 3 * mesh->vertex_count);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 2, value, NULL) == GPROJ_OK &&
+                 gproj_form_error(form)->code == GPROJ_OK);
+    GPROJT_NEAR(value[1], mesh->position[1], 1e-12);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Where there is a sphere already, it is found at the start: of edges that all touch one, as those of an octahedron do, and
+   of a pyramid's that do not. */
+GPROJT_TEST(midspheres_begin_at_their_place) {
+    static const int32_t degree[8] = {3, 3, 3, 3, 3, 3, 3, 3};
+    static const int32_t corner[24] = {0, 2, 4, 2, 1, 4, 1, 3, 4, 3, 0, 4, 2, 0, 5, 1, 2, 5, 3, 1, 5, 0, 3, 5};
+    int32_t i, bent;
+    for (bent = 0; bent < 2; ++bent) {
+        double position[18] = {1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1};
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        if (bent) position[2] = 0.7;
+        for (i = 0; i < 18; ++i) position[i] = 3 * position[i] + 5 * (i % 3);
+        mesh = gproj_mesh_create(6, position, 8, degree, corner, NULL, NULL);
+        form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_add_midsphere(form, mesh->edge_count, NULL, 1) >= 0);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(bent ? result.residual > 1e-3 : result.residual < 1e-12);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
@@ -370,6 +415,8 @@ int main(void) {
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
     GPROJT_RUN(wrong_rows_are_refused);
+    GPROJT_RUN(unknowns_refused);
+    GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();

@@ -80,6 +80,19 @@ GPROJT_TEST(circular_real_meshes) {
 }
 
 /* Known volumes: a box, a prism over the plane; and the derivatives against central differences. */
+/* Two groups of the same rows act as one: they have their axis points in common. */
+GPROJT_TEST(circularity_twice) {
+    gproj_mesh *mesh = gprojt_noisy(2, 4, 0.05, 3);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    GPROJT_CHECK(gproj_add_circularity(form, 1) >= 0);
+    GPROJT_CHECK(gproj_add_circularity(form, 0.5) >= 0);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).circularity_max < 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(volumes) {
     static const double box[24] = {0, 0, 0, 2, 0, 0, 2, 3, 0, 0, 3, 0, 0, 0, 4, 2, 0, 4, 2, 3, 4, 0, 3, 4};
     static const int32_t degree[6] = {4, 4, 4, 4, 4, 4};
@@ -361,6 +374,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 }
 
 int main(void) {
+    GPROJT_RUN(circularity_twice);
     GPROJT_RUN(circular_faces);
     GPROJT_RUN(circular_real_meshes);
     GPROJT_RUN(volumes);

@@ -857,6 +857,29 @@ GPROJT_TEST(funicular_shapes_and_plates) {
     }
 }
 
+/* The verdict names the three vertices whose forces are off most, in a coordinate, the worst last, and by how much. */
+static void gprojt_check_unbalanced(const gproj_mesh *mesh, const gproj_result *result, const double *sum,
+                                    gprojt_list pins, double unbalance) {
+    const char *piece = strstr(result->message, "was found near this shape: vertices ");
+    double off[3] = {0, 0, 0}, told = -1;
+    int vertex[3] = {-1, -1, -1};
+    int32_t v, k;
+    GPROJT_REQUIRE(piece != NULL);
+    GPROJT_CHECK(
+        sscanf(piece, "was found near this shape: vertices %d, %d, %d out of balance by up to %lf of the largest load",
+               &vertex[0], &vertex[1], &vertex[2], &told) == 4);
+    GPROJT_NEAR(told, unbalance, 3e-3 * unbalance);
+    for (k = 0; k < 3; ++k) {
+        GPROJT_REQUIRE(vertex[k] >= 0 && vertex[k] < mesh->vertex_count && vertex[k] != vertex[(k + 1) % 3]);
+        GPROJT_CHECK(!gprojt_listed(pins.item, pins.count, vertex[k]));
+        for (v = 3 * vertex[k]; v < 3 * vertex[k] + 3; ++v) off[k] = fmax(off[k], fabs(sum[v]));
+    }
+    GPROJT_CHECK(off[0] <= off[1] && off[1] <= off[2]);
+    for (v = 0; v < 3 * mesh->vertex_count; ++v)
+        if (!gprojt_listed(pins.item, pins.count, v / 3) && v / 3 != vertex[1] && v / 3 != vertex[2])
+            GPROJT_CHECK(fabs(sum[v]) <= off[0] * (1 + 1e-9));
+}
+
 GPROJT_TEST(plates_are_infeasible) {
     int shape;
     for (shape = QUADS; shape <= HEXAGONS; ++shape) {
@@ -885,6 +908,7 @@ GPROJT_TEST(plates_are_infeasible) {
         }
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && result.outcome != GPROJ_FAILED && result.residual > 1e-3);
         GPROJT_NEAR(result.residual, residual, 1e-6 * residual);
+        gprojt_check_unbalanced(mesh, &result, sum, pins, unbalance);
         GPROJT_NEAR(gproj_measure_forces(form, NULL).residual, unbalance, 1e-9 + 1e-9 * unbalance);
         GPROJT_CHECK(unbalance > 1e-6 && gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
         gproj_form_destroy(form);
@@ -952,6 +976,37 @@ GPROJT_TEST(forces_are_kept_and_set) {
 }
 
 /* Of two parts without supports the verdict names the first, by the first vertex. */
+/* The variables of forces, for rows of the caller's: with the form's units they are the densities; pinned edges have none. */
+GPROJT_TEST(forces_are_variables) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 4, 10, 3);
+    gproj_loads loads = gprojt_no_loads();
+    double *w = gprojt_numbers(mesh->edge_count), unit = 0;
+    gproj_form *form;
+    int32_t e, with = 0;
+    GPROJT_CHECK(gproj_force_variable(NULL, 0) == -1);
+    form = gproj_form_create(mesh, NULL);
+    GPROJT_CHECK(gproj_force_variable(form, 0) == -1); /* no forces yet */
+    gproj_form_destroy(form);
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    gproj_solve(form, 10, NULL);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_force_variable(form, -1) == -1 && gproj_force_variable(form, mesh->edge_count) == -1);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        int32_t variable = gproj_force_variable(form, e);
+        bool pinned = gproj_mesh_is_boundary_vertex(mesh, mesh->origin[2 * e]) &&
+                      gproj_mesh_is_boundary_vertex(mesh, mesh->origin[2 * e + 1]);
+        GPROJT_CHECK((variable >= 0) == !pinned);
+        if (variable < 0) continue;
+        if (with++ == 0) unit = w[e] / gproj_system_values(gproj_form_system(form))[variable];
+        GPROJT_NEAR(w[e], unit * gproj_system_values(gproj_form_system(form))[variable], 1e-12 * fabs(w[e]));
+    }
+    GPROJT_CHECK(with > 10);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w);
+}
+
 GPROJT_TEST(parts_without_support_are_named) {
     gprojt_soup soup;
     gproj_mesh *mesh;
@@ -1546,14 +1601,14 @@ GPROJT_TEST(refusals_without_equilibrium) {
 }
 
 GPROJT_TEST(refusals_of_bounds) {
-    static const int32_t far[2] = {0, 100000};
+    static const int32_t far[2] = {0, 100000}, some[2] = {3, 7};
     static const double none[2] = {1, 0}, infinite[2] = {INFINITY, 1};
     gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
     int i;
-    for (i = 0; i < 12; ++i) {
+    for (i = 0; i < 13; ++i) {
         gproj_form *form = gprojt_form_with_equilibrium(mesh);
-        bool refused = false, edge = i < 2 || i == 5 || i == 6 || i == 10;
-        int64_t index = i < 2 || i == 10 ? 100000 : i == 5 ? 1 : i == 6 ? 0 : -1;
+        bool refused = false, edge = i < 2 || i == 5 || i == 6 || i == 10 || i == 12;
+        int64_t index = i < 2 || i == 10 ? 100000 : i == 5 ? 1 : i == 6 ? 0 : i == 12 ? 7 : -1;
         gproj_code code = i < 2 || i == 10 ? GPROJ_ERROR_INDEX : GPROJ_ERROR_ARGUMENT;
         if (i == 0) refused = gproj_add_compression(form, 2, far, 1) == -1;
         if (i == 1) refused = gproj_add_tension(form, 2, far, 1) == -1;
@@ -1567,6 +1622,7 @@ GPROJT_TEST(refusals_of_bounds) {
         if (i == 9) refused = gproj_add_stress_bounds(form, 2, NULL, NULL, -INFINITY, -INFINITY, 1) == -1;
         if (i == 10) refused = gproj_add_stress_bounds(form, 2, far, NULL, 0, 1, 1) == -1;
         if (i == 11) refused = gproj_add_stress_bounds(form, -2, far, NULL, 0, 1, 1) == -1;
+        if (i == 12) refused = gproj_add_stress_bounds(form, 2, some, none, 0, 1, 1) == -1;
         if (!refused || gproj_form_error(form)->code != code) printf("    refusal %d\n", i);
         gprojt_check_refused(form, refused, code, edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_NONE, index);
     }
@@ -1748,6 +1804,7 @@ int main(void) {
     GPROJT_RUN(funicular_shapes_and_plates);
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_are_kept_and_set);
+    GPROJT_RUN(forces_are_variables);
     GPROJT_RUN(parts_without_support_are_named);
     GPROJT_RUN(forces_measured_one_by_one);
     GPROJT_RUN(forces_of_any_size_are_set);

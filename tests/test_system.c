@@ -1004,7 +1004,7 @@ static bool gprojt_use_system(const gproj_host *host, void *user) {
     gproj_group group;
     uint64_t seed = 5;
     bool right;
-    int32_t i, k;
+    int32_t i, k, row;
     (void)user;
     if (!s) return false;
     memset(&group, 0, sizeof group);
@@ -1017,7 +1017,8 @@ static bool gprojt_use_system(const gproj_host *host, void *user) {
     for (i = 0; i < 2; ++i) {
         gproj_term term[24];
         for (k = 0; k < 24; ++k) term[k] = gprojt_term(k, -1, gprojt_uniform(&seed));
-        gproj_system_add_row(s, 1, 24, term, -1, i);
+        row = gproj_system_add_row(s, 1, 24, term, -1, i);
+        GPROJT_CHECK(row == (gproj_system_error(s)->code ? -1 : i));
     }
     gproj_system_check_gradients(s);
     result = gproj_system_solve(s, 20, NULL);
