@@ -4,10 +4,10 @@
 . "$(dirname "$0")/checks.sh"
 
 have python3 || { skip 'frames: no python3'; report; }
-tool=$(realpath -q "${GPROJ_TOOL:-build/tool}")
+tool=$(existing "${GPROJ_TOOL:-build/tool}")
 compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library that is compiled once for all tests, if it is
     local name=$1 library
-    library=$(realpath -q "$2")
+    library=$(existing "$2")
     shift 2
     [ -n "$library" ] || set -- -O1
     ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$@" ${library:+-DGPROJI_IMPLEMENTED} "$root/tools/frame.c" $library \
@@ -15,7 +15,7 @@ compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library tha
 }
 compile frame build/library.san.a -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
 compile fast build/library.a -O2
-data=$(realpath -q "${GPROJ_DATA:-../../shared/data}")
+data=$(existing "${GPROJ_DATA:-../../shared/data}")
 cd "$work" || exit 2
 
 grid() { # grid N HEIGHT: a vault of N x N quads over a square, by 1
