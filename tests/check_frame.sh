@@ -103,6 +103,11 @@ refuses 3 'is a mechanism: vertex ' vault.obj --roller boundary
 refuses 3 'is a mechanism: vertex ' square.obj --pinned 0
 refuses 3 'wrong units?' vault.obj --gravity 1e200
 refuses 3 'cannot be written' vault.obj --report nowhere/r.json
+strange=$(printf 'a\nb\033[31m.obj') # names are printed on one line, without what terminals obey
+refuses 3 'a?b?[31m.obj' "$strange"
+cp vault.obj "$strange"
+./frame "$strange" --skip-buckling >out.txt 2>err.txt
+[ $? -eq 0 ] && head -n 1 out.txt | grep -qF 'a?b?[31m.obj: ' && pass || fail "a strange name: $(head -n 1 out.txt)"
 
 # Equilibrium of the form: beams have nearly these forces. On Intersection, whose faces are planar (the paper, section 4):
 # hardly any beam is in tension once forces are part of the form.
