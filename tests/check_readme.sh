@@ -48,7 +48,7 @@ for number, code in enumerate(code for language, code in fences if language == "
 
 shell = "\n".join(code for language, code in fences if language in ("", "sh", "bash", "console", "shell"))
 commands = re.findall(r"^\s*(?:\$ )?(?:.*(?:&&|;)\s*)?(make\b[^#;&|\n]*)", shell, re.M)
-commands += re.findall(r"`(make [^`\n]+)`", readme)
+commands += re.findall(r"`(make [^`\n&;|]+)", readme)
 open(f"{out}/make.list", "w").write("".join(c.strip() + "\n" for c in dict.fromkeys(commands)))
 # Shell blocks are run in a folder that looks like the repository: one command a line of the list.
 os.makedirs(f"{out}/clone/tools")
