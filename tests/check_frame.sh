@@ -4,10 +4,10 @@
 . "$(dirname "$0")/checks.sh"
 
 have python3 || { skip 'frames: no python3'; report; }
-tool=$(realpath -q "${GPROJ_TOOL:-build/tool}")
+tool=$(existing "${GPROJ_TOOL:-build/tool}")
 compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library that is compiled once for all tests, if it is
     local name=$1 library
-    library=$(realpath -q "$2")
+    library=$(existing "$2")
     shift 2
     [ -n "$library" ] || set -- -O1
     ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$@" ${library:+-DGPROJI_IMPLEMENTED} "$root/tools/frame.c" $library \
@@ -15,7 +15,7 @@ compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library tha
 }
 compile frame build/library.san.a -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
 compile fast build/library.a -O2
-data=$(realpath -q "${GPROJ_DATA:-../../shared/data}")
+data=$(existing "${GPROJ_DATA:-../../shared/data}")
 cd "$work" || exit 2
 
 grid() { # grid N HEIGHT: a vault of N x N quads over a square, by 1
@@ -103,6 +103,11 @@ refuses 3 'is a mechanism: vertex ' vault.obj --roller boundary
 refuses 3 'is a mechanism: vertex ' square.obj --pinned 0
 refuses 3 'wrong units?' vault.obj --gravity 1e200
 refuses 3 'cannot be written' vault.obj --report nowhere/r.json
+strange=$(printf 'a\nb\033[31m.obj') # names are printed on one line, without what terminals obey
+refuses 3 'a?b?[31m.obj' "$strange"
+cp vault.obj "$strange"
+./frame "$strange" --skip-buckling >out.txt 2>err.txt
+[ $? -eq 0 ] && head -n 1 out.txt | grep -qF 'a?b?[31m.obj: ' && pass || fail "a strange name: $(head -n 1 out.txt)"
 
 # Equilibrium of the form: beams have nearly these forces. On Intersection, whose faces are planar (the paper, section 4):
 # hardly any beam is in tension once forces are part of the form.

@@ -1,7 +1,8 @@
 #!/bin/bash
 # check_readme.sh - what the documents show works: the C programs in the header's manual and in README.md compile
-# without a warning and run, as do README.md's programs in Python; the README's make commands exist, its shell blocks and the examples of --help run as they are
-# printed, in sh and (where it is installed) in zsh, and the files it names are there.
+# without a warning and run, as do README.md's programs in Python; the README's make commands exist, its
+# shell blocks and the examples of --help run as they are printed, in sh and (where it is installed) in zsh, and the
+# files it names are there.
 #
 # A program in the manual begins at a line "#define GUIDEDPROJ_IMPLEMENTATION" and ends at the "}" in the same column. In
 # the README it is a fenced block ```c with a main. Meshes that a program loads are put there for it to find.
@@ -47,7 +48,7 @@ for number, code in enumerate(code for language, code in fences if language == "
 
 shell = "\n".join(code for language, code in fences if language in ("", "sh", "bash", "console", "shell"))
 commands = re.findall(r"^\s*(?:\$ )?(?:.*(?:&&|;)\s*)?(make\b[^#;&|\n]*)", shell, re.M)
-commands += re.findall(r"`(make [^`\n]+)`", readme)
+commands += re.findall(r"`(make [^`\n&;|]+)", readme)
 open(f"{out}/make.list", "w").write("".join(c.strip() + "\n" for c in dict.fromkeys(commands)))
 # Shell blocks are run in a folder that looks like the repository: one command a line of the list.
 os.makedirs(f"{out}/clone/tools")
@@ -72,7 +73,7 @@ touch "$work/help.txt"
 [ ! -x "$tool" ] || "$tool" --help >"$work/help.txt"
 python3 "$work/readme.py" "$root" "$work" || fail 'readme.py'
 compile="gcc -std=c99 -O1 -Wall -Wextra -Wpedantic -Werror -I'$root'"
-library=$(realpath -q build/library.a) # compiled once for all tests
+library=$(existing build/library.a) # compiled once for all tests; alone this script compiles it with each program
 for where in manual readme; do
     found=0
     for program in "$work/${where}"_*.c; do

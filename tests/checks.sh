@@ -14,6 +14,9 @@ pass() { passed=$((passed + 1)); }
 fail() { failed=$((failed + 1)); printf 'FAIL %s\n' "$*"; }
 skip() { skipped=$((skipped + 1)); printf 'skip %s\n' "$*"; }
 
+# existing FILE: its absolute path if it is there, else nothing (realpath -q also answers for files that are missing).
+existing() { [ ! -e "$1" ] || realpath "$1"; }
+
 # clean LABEL TEXT: passes when the text, a list of complaints, is empty.
 clean() {
     if [ -z "$2" ]; then pass; else fail "$1"; printf '%s\n' "$2" | head -n 20 | sed 's/^/  /'; fi

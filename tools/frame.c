@@ -81,13 +81,15 @@ typedef struct tool {
 
 /* Prints a failure's sentence and keeps the exit code; every failure passes through here. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
+    char sentence[8192];
     va_list list;
     if (t->exit_code != 0) return false;
     t->exit_code = exit_code;
-    fputs("frame: ", stderr);
     va_start(list, format);
-    vfprintf(stderr, format, list);
+    vsnprintf(sentence, sizeof sentence, format, list);
     va_end(list);
+    fputs("frame: ", stderr);
+    gprojx_print_plain(stderr, sentence);
     fputs(exit_code == EXIT_USAGE ? "\n(frame --help lists all options)\n" : "\n", stderr);
     return false;
 }
@@ -767,8 +769,9 @@ static void print_summary(const tool *t) {
         double load = x->load[k] - (k == 2 ? x->weight : 0);
         sum += load * load, difference += pow(load + x->reaction[k], 2);
     }
-    printf("%s: %ld vertices, %ld edges as beams of %s m, %ld supports\n", file_name(t->input),
-           (long)t->mesh->vertex_count, (long)t->mesh->edge_count, t->section_text, (long)supports);
+    gprojx_print_plain(stdout, file_name(t->input));
+    printf(": %ld vertices, %ld edges as beams of %s m, %ld supports\n", (long)t->mesh->vertex_count,
+           (long)t->mesh->edge_count, t->section_text, (long)supports);
     printf("loads         own weight %s, at vertices %s in all\n", amount(x->weight, "N", a),
            amount(gprojx_length3(x->load), "N", b));
     printf("reactions     at most %s, at vertex %ld; their sum is that of the loads to %.0e\n",

@@ -172,16 +172,7 @@ typedef struct tool {
     int exit_code; /* once something has failed */
 } tool;
 
-/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F) that
-   terminals obey. */
-static void print_plain(FILE *file, const char *text) {
-    for (; *text; ++text) {
-        unsigned char c = (unsigned char)*text, after = (unsigned char)text[1];
-        bool wide = c == 0xc2 && after >= 0x80 && after < 0xa0;
-        fputc(c < 32 || c == 127 || wide ? '?' : c, file);
-        text += wide;
-    }
-}
+static void print_plain(FILE *file, const char *text) { gprojx_print_plain(file, text); }
 
 /* Prints a failure's sentence and keeps the exit code; every failure passes through here. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
@@ -799,7 +790,9 @@ static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t
     gproj_error error;
     char *bytes = gprojx_load_file(path, is_text, t->file_limit, length, &error);
     if (!bytes && error.code == GPROJ_ERROR_MEMORY) fail_memory(t);
-    if (!bytes) fail(t, EXIT_REFUSED, "%s: %s", path, error.message);
+    if (!bytes)
+        fail(t, EXIT_REFUSED, "%s: %s%s", path, error.message,
+             error.code == GPROJ_ERROR_SIZE ? "; --file-limit sets how much is read" : "");
     return bytes;
 }
 

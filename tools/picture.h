@@ -1110,9 +1110,11 @@ static void gprojx_put_force_scale(gprojx_painter *p, double x, double y) {
                      tension ? "compression" : "axial forces: compression alone");
 }
 
-/* A line of the legend: a sample of this height, and how many there are. */
-static void gprojx_put_mark(gprojx_painter *p, double x, double y, double height, int32_t count, const char *shape,
+/* A line of the legend: how many there are, and right of it a sample of this height, so that the words end inside the
+   picture in any font. */
+static void gprojx_put_mark(gprojx_painter *p, double y, double height, int32_t count, const char *shape,
                             const char *one, const char *many) {
+    const double x = p->width - 62;
     char text[96];
     snprintf(text, sizeof text, "%ld %s", (long)count, count == 1 ? one : many);
     fputs("<path", p->file);
@@ -1123,7 +1125,7 @@ static void gprojx_put_mark(gprojx_painter *p, double x, double y, double height
         gprojx_put_path(p->file, sample, 4, true);
     }
     fprintf(p->file, " %s/>\n", shape);
-    gprojx_put_words(p->file, x + 30, y + 5, 14, "", text);
+    gprojx_put_words(p->file, x - 8, y + 5, 14, " text-anchor=\"end\"", text);
 }
 
 static void gprojx_put_legend(gprojx_painter *p) {
@@ -1140,16 +1142,16 @@ static void gprojx_put_legend(gprojx_painter *p) {
     if (p->edge_most > 0)
         gprojx_put_force_scale(p, p->options->face_value ? x + width + 24 : x, p->options->face_value ? y - 58 : y);
     if (p->turned_count > 0)
-        gprojx_put_mark(p, p->width - 215, y + 8, 10, p->turned_count, "fill=\"#e66e28\" stroke=\"#222\"",
-                        "face turned over", "faces turned over");
+        gprojx_put_mark(p, y + 8, 10, p->turned_count, "fill=\"#e66e28\" stroke=\"#222\"", "face turned over",
+                        "faces turned over");
     if (p->folded_count > 0)
-        gprojx_put_mark(p, p->width - 215, y - 14, 0, p->folded_count, "stroke=\"#d4002a\" stroke-width=\"2.5\"",
-                        "folded edge", "folded edges");
+        gprojx_put_mark(p, y - 14, 0, p->folded_count, "stroke=\"#d4002a\" stroke-width=\"2.5\"", "folded edge",
+                        "folded edges");
     if (p->crossed_count > 0)
-        gprojx_put_mark(p, p->width - 215, y - 36, 10, p->crossed_count, "fill=\"#f2c200\" stroke=\"#222\"",
-                        "bow-tie: crosses itself", "bow-ties: cross themselves");
+        gprojx_put_mark(p, y - 36, 10, p->crossed_count, "fill=\"#f2c200\" stroke=\"#222\"", "bow-tie: crosses itself",
+                        "bow-ties: cross themselves");
     if (p->collapsed_count > 0)
-        gprojx_put_mark(p, p->width - 215, y - 58, 10, p->collapsed_count, "fill=\"none\" stroke=\"#d4002a\"",
+        gprojx_put_mark(p, y - 58, 10, p->collapsed_count, "fill=\"none\" stroke=\"#d4002a\"",
                         "collapsed edge (ringed)", "collapsed edges (ringed)");
 }
 

@@ -1,4 +1,4 @@
-/* readers.h - reads numbers, lists of vertices, loads and whole files, for the command lines.
+/* readers.h - reads numbers, lists of vertices, loads and whole files, and prints paths, for the command lines.
 
    Those that can refuse return false or NULL and say why in `error`, without the name of the file or option. Include
    guidedproj.h before this file. */
@@ -25,6 +25,21 @@ static bool gprojx_refuse(gproj_error *error, gproj_code code, const char *forma
     va_end(list);
     return false;
 }
+
+/* ---- words ---- */
+
+/* Prints text on one line: names of files may hold newlines, and control characters (of UTF-8 also U+0080 to U+009F) that
+   terminals obey. */
+static void gprojx_print_plain(FILE *file, const char *text) {
+    for (; *text; ++text) {
+        unsigned char c = (unsigned char)*text, after = (unsigned char)text[1];
+        bool wide = c == 0xc2 && after >= 0x80 && after < 0xa0;
+        fputc(c < 32 || c == 127 || wide ? '?' : c, file);
+        text += wide;
+    }
+}
+
+/* ---- numbers and lists ---- */
 
 /* Reads text[0..size-1], all of which must be one finite number. */
 static bool gprojx_read_number(const char *text, size_t size, double *value) {
@@ -165,9 +180,7 @@ static char *gprojx_load_file(const char *path, gprojx_is_text is_text, int32_t 
         bytes[size] = 0;
         if (ferror(file)) more = good = gprojx_refuse(error, GPROJ_ERROR_FILE, "%s", strerror(errno));
         if (size > most)
-            more = good =
-                gprojx_refuse(error, GPROJ_ERROR_SIZE,
-                              "more than %ld MB, or without end; --file-limit sets how much is read", (long)megabytes);
+            more = good = gprojx_refuse(error, GPROJ_ERROR_SIZE, "more than %ld MB, or without end", (long)megabytes);
     }
     if (file) fclose(file);
     *length = size;
