@@ -1485,8 +1485,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      mesh is.
    - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, and edges
      when they become shorter than 0.2 of their length, for 50 iterations or half of a smaller limit, in place of the
-     guard: faces stay convex and upright where they were. The rows come as they are needed, as the group "corners". If no step is found with them they
-     are let go; gproj_result.spoiled counts the damage.
+     guard: faces stay convex and upright where they were. The rows come as they are needed, as the group "corners". If
+     no step is found with them they are let go; gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
      most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
      (gproj_solve_begin).

@@ -157,15 +157,21 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
     gproj_add_gliding_boundary(form, 1);
 }
 
-/* The edges beside a fixed corner become short while the faces there keep their area: of these twelve patches four lost
-   one, as long as only corners were kept. */
+/* Edges become short while the faces there keep their area, beside fixed corners above all: of these 36 patches at most 21
+   came out sound as long as only corners were kept, and 25 or more do, by any compiler and without SIMD. */
 GPROJT_TEST(edges_are_kept) {
-    int i;
-    for (i = 1; i <= 12; ++i) {
-        double planarity;
-        gproj_result result = gprojt_solve_twisted(5, 0.05 * i, gprojt_add_planar_gliding, &planarity);
-        GPROJT_CHECK(gprojt_is_sound(&result) && planarity <= 1e-12);
-    }
+    static void (*const build[3])(gproj_form *form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
+                                                                   gprojt_add_planar_gliding};
+    static const int32_t sizes[3] = {5, 6, 5};
+    int i, k, sound = 0;
+    for (k = 0; k < 3; ++k)
+        for (i = 1; i <= 12; ++i) {
+            double planarity;
+            gproj_result result = gprojt_solve_twisted(sizes[k], 0.05 * i, build[k], &planarity);
+            sound += result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 && planarity <= 1e-12;
+        }
+    if (sound < 23) printf("  %d sound\n", sound);
+    GPROJT_CHECK(sound >= 23);
 }
 
 typedef struct gprojt_attempts {
