@@ -219,6 +219,13 @@ while [ $seed -lt 60 ]; do
 done
 pass
 
+# ---- the examples are exact and sound ----
+
+cp "$here"/../examples/problems/* .
+for name in shell three_curves hall; do
+    "$tool" --problem $name.json -o example.obj --quiet >out.txt 2>&1 && pass || fail "$name.json exits with $?: $(cat out.txt)"
+done
+
 # ---- the schema has the keys that the tool has ----
 
 if command -v python3 >/dev/null; then
