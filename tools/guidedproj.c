@@ -5,7 +5,7 @@
 
    From top to bottom: the run and its errors; numbers and words; readers of values; files; seams; builders of
    constraints and wishes; the table of options, which names a reader and a builder for each; the command line; the
-   solve; outputs (mesh, report, picture); signals; main.
+   problem file; the solve; outputs (mesh, report, picture); signals; main.
 
    A new option is a row in the table. Where no reader or builder fits, it has one of its own. */
 #define _XOPEN_SOURCE 700
@@ -31,6 +31,7 @@
 #include "formats.h"
 #include "panels.h"
 #include "picture.h"
+#include "problem.h"
 #include "readers.h"
 #include "report.h"
 #include "threads.h"
@@ -57,7 +58,8 @@ enum {
     MOST_MEGABYTES = 1000000,
     MOST_LEVELS = 14,
     MOST_SIDES = 64,
-    MOST_DRAGS = 50 /* and releases, for one --move */
+    MOST_REPEATS = 10000, /* of an option in a problem file */
+    MOST_DRAGS = 50       /* and releases, for one --move */
 };
 
 static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
@@ -71,12 +73,19 @@ typedef struct tool_demand { /* what an option that adds to the form was given; 
     double min, max; /* bounds */
     double amount;   /* volume, area or cost */
     bool factor;     /* `amount` multiplies the input's */
+    int32_t line;    /* of the problem file; 0: the command line */
 } tool_demand;
 
 typedef struct tool_move {
     int32_t vertex;
     double position[3], weight;
+    int32_t line; /* as above */
 } tool_move;
+
+typedef struct tool_word { /* an option as it was given, for --write-problem */
+    int row;
+    const char *value; /* NULL: none */
+} tool_word;
 
 typedef struct tool_subdivision {
     int32_t levels; /* 0: none */
@@ -104,6 +113,8 @@ enum {
     OUTPUT_SUPPORT,
     OUTPUT_PANELS,
     OUTPUT_PANEL_LIST,
+    OUTPUT_RESIDUALS,
+    OUTPUT_PROBLEM,
     OUTPUT_STATE, /* and an input, where the file exists */
     OUTPUT_COUNT
 };
@@ -140,6 +151,13 @@ typedef struct tool {
     const char *title;                /* of the picture; NULL: the name of the output */
     bool nearest, allow_spoiled, quiet, help, version;
     bool seen[MOST_OPTIONS]; /* by row */
+    tool_word *word;         /* in the order in which they were read */
+    int32_t word_count;
+    const char *start_forces;
+    const char *problem_path; /* --problem; NULL: none */
+    gprojx_problem problem;
+    int32_t line; /* of the problem file that is being dealt with, for sentences; 0: none */
+    int32_t line_of[MOST_OPTIONS], group_of[MOST_OPTIONS]; /* by row; the group in the form, -1: none or several */
 
     /* the work */
     gproj_host host;
@@ -149,8 +167,8 @@ typedef struct tool {
     gproj_offset_measures offset_measures;
     gprojx_panels *panels;
     gprojx_reading reading; /* of the input */
-    int32_t seams, welded; /* boundary vertices at the same place as others: left as they are, merged */
-    int32_t collapsed;     /* faces that merging left with fewer than 3 vertices */
+    int32_t seams, welded;  /* boundary vertices at the same place as others: left as they are, merged */
+    int32_t collapsed;      /* faces that merging left with fewer than 3 vertices */
     gproj_surface *surface;
     gproj_curve **curve;
     int32_t curve_count;
@@ -162,6 +180,7 @@ typedef struct tool {
     double *imbalance_before, *imbalance; /* each face's load that the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
     bool *is_support;
+    uint8_t *slides; /* by vertex: the free axes of rollers; NULL: there are none */
     gproj_forces forces;
     gproj_measures before, after;
     double volume_before;
@@ -179,12 +198,14 @@ static bool fail(tool *t, int exit_code, const char *format, ...) {
     char sentence[8192];
     va_list list;
     if (t->exit_code != 0) return false;
+    if (t->line > 0 && exit_code == EXIT_USAGE) exit_code = EXIT_REFUSED; /* the problem file is an input */
     t->exit_code = exit_code;
     if (t->bar) fputc('\n', stderr);
     va_start(list, format);
     vsnprintf(sentence, sizeof sentence, format, list);
     va_end(list);
     fputs("guidedproj: ", stderr);
+    if (t->line > 0) print_plain(stderr, t->problem_path), fprintf(stderr, ":%ld: ", (long)t->line);
     print_plain(stderr, sentence);
     fputs(exit_code == EXIT_USAGE ? "\n(guidedproj --help lists all options)\n" : "\n", stderr);
     return false;
@@ -535,6 +556,7 @@ static bool add_word(tool *t, tool_demand *words, int32_t *count, const char *na
     if (word.length == 0) return fail(t, EXIT_USAGE, "--%s: expected a word, a list or a file before the weight", name);
     if (!has_constant_weight(&word))
         return fail(t, EXIT_USAGE, "--%s %s: what must hold has a constant weight", name, value);
+    word.line = t->line;
     words[(*count)++] = word;
     return true;
 }
@@ -570,7 +592,7 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
         if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word))
             return fail_value(t, name, value, "I,X,Y,Z: a vertex and the three coordinates of its new place");
     }
-    move->weight = word.weight;
+    move->weight = word.weight, move->line = t->line;
     for (i = 0; i < t->move_count; ++i)
         if (t->move[i].vertex == move->vertex)
             return fail(t, EXIT_USAGE, "--%s: vertex %ld is moved twice", name, (long)move->vertex);
@@ -738,6 +760,17 @@ static bool keep_apart(tool *t, const tool_output *output, const char *path, siz
     return !same;
 }
 
+static bool keep_problem_apart(tool *t, const tool_output *output) {
+    int32_t i;
+    if (t->problem_path && !keep_apart(t, output, t->problem_path, strlen(t->problem_path))) return false;
+    if (t->start_forces && !keep_apart(t, output, t->start_forces, strlen(t->start_forces))) return false;
+    for (i = 0; i < t->problem.count; ++i) {
+        const gprojx_value *v = &t->problem.value[i];
+        if (v->key && strcmp(v->key, "file") == 0 && !keep_apart(t, output, v->text, v->size)) return false;
+    }
+    return true;
+}
+
 static bool prepare_outputs(tool *t) {
     int32_t i, j;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
@@ -751,6 +784,7 @@ static bool prepare_outputs(tool *t) {
         for (j = 0; j < i; ++j)
             if (t->output[j].target && strcmp(t->output[j].target, output->target) == 0)
                 return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
+        if (!keep_problem_apart(t, output)) return false;
         if (i != OUTPUT_MESH && !keep_apart(t, output, t->input, strlen(t->input))) return false;
         for (j = 0; i != OUTPUT_MESH && j < t->fix_count; ++j)
             if (!keep_apart(t, output, t->fix[j].text, t->fix[j].length)) return false;
@@ -931,13 +965,32 @@ static bool fill_curve(tool *t) {
     return t->mesh != NULL;
 }
 
+static bool fail_problem(tool *t, const gproj_error *error) {
+    if (error->code == GPROJ_ERROR_MEMORY) return fail_memory(t);
+    return fail(t, EXIT_REFUSED, "%s:%s", t->problem_path, error->message);
+}
+
+/* Has the problem file this section? */
+static const gprojx_value *problem_section(const tool *t, const char *key) {
+    return t->problem.count > 0 ? gprojx_member(&t->problem, t->problem.value, key) : NULL;
+}
+
+/* Subdivides at once, or with handles a level at a time: the vertices of each level are pulled before the next. */
 static bool subdivide(tool *t) {
-    const gproj_subdivide_options options = {.levels = t->subdivision.levels, .scheme = t->subdivision.scheme};
+    bool pulled = problem_section(t, "handles") != NULL;
+    const gproj_subdivide_options options = {.levels = pulled ? 1 : t->subdivision.levels,
+                                             .scheme = t->subdivision.scheme};
+    int32_t level, last = pulled ? t->subdivision.levels : 1;
     gproj_error error;
-    gproj_mesh *coarse = t->mesh;
-    t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
-    gproj_mesh_destroy(coarse);
-    return t->mesh || fail_library(t, t->input, &error);
+    for (level = 0; level <= last; ++level) {
+        gproj_mesh *coarse = t->mesh;
+        if (pulled && !gprojx_problem_pull(&t->problem, coarse, level, &error)) return fail_problem(t, &error);
+        if (level == last) break;
+        t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
+        gproj_mesh_destroy(coarse);
+        if (!t->mesh) return fail_library(t, t->input, &error);
+    }
+    return true;
 }
 
 /* Finds the vertex inside that is farthest from the boundary (curves `first` and after); -1: there is none. */
@@ -1117,10 +1170,13 @@ static bool read_mesh(tool *t) {
     memcpy(t->original, t->mesh->position, 3 * (size_t)t->mesh->vertex_count * sizeof *t->original);
     t->before = gproj_measure(t->mesh, t->original, t->planarity_before);
     t->volume_before = gproj_volume(t->mesh);
-    for (i = 0; i < t->move_count; ++i)
+    for (i = 0; i < t->move_count; ++i) {
+        t->line = t->move[i].line;
         if (t->move[i].vertex >= t->mesh->vertex_count)
             return fail(t, EXIT_USAGE, "--move: there is no vertex %ld; the mesh has %ld, counted from 0",
                         (long)t->move[i].vertex, (long)t->mesh->vertex_count);
+    }
+    t->line = 0;
     return true;
 }
 
@@ -1181,6 +1237,7 @@ static int32_t add_fixed(tool *t, const tool_demand *none) {
     (void)none;
     for (k = 0; mark && list && k < t->fix_count; ++k) {
         memset(mark, 0, vertices * sizeof *mark);
+        t->line = t->fix[k].line;
         if (!mark_vertices(t, "--fix", &t->fix[k], mark)) break;
         for (count = i = 0; i < t->mesh->vertex_count; ++i)
             if (mark[i] && !is_moved(t, i)) list[count++] = i;
@@ -1266,7 +1323,10 @@ static bool add_gliding(tool *t, const tool_demand *word) {
 static int32_t add_all_gliding(tool *t, const tool_demand *none) {
     int32_t i;
     (void)none;
-    for (i = 0; i < t->glide_count && add_gliding(t, &t->glide[i]); ++i) continue;
+    for (i = 0; i < t->glide_count; ++i) {
+        t->line = t->glide[i].line;
+        if (!add_gliding(t, &t->glide[i])) break;
+    }
     return -1;
 }
 
@@ -1323,33 +1383,64 @@ static bool read_loads(tool *t) {
     return good;
 }
 
-static int32_t add_equilibrium(tool *t, const tool_demand *demand) {
+/* Marks the supports: those of --supports, or the boundary, and the rollers. */
+static bool mark_supports(tool *t) {
     const tool_demand boundary = split_word("boundary", 1);
+    gproj_error error;
+    if (!mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support)) return false;
+    if (!problem_section(t, "rollers")) return true;
+    t->slides = (uint8_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *t->slides);
+    return t->slides &&
+           (gprojx_problem_rollers(&t->problem, t->is_support, t->slides, &error) || fail_problem(t, &error));
+}
+
+/* Makes an array with a number for each edge: `usual`, or what a section of the problem says. NULL: there is none, or
+   the run has failed. */
+static double *edge_numbers(tool *t, const char *section, const char *key, double usual) {
+    double *of_edge =
+        problem_section(t, section) ? (double *)take(t, (size_t)t->mesh->edge_count, sizeof *of_edge) : NULL;
+    gproj_error error;
+    int32_t e;
+    for (e = 0; of_edge && e < t->mesh->edge_count; ++e) of_edge[e] = usual;
+    if (of_edge && !gprojx_problem_edges(&t->problem, section, key, of_edge, &error)) fail_problem(t, &error);
+    return of_edge;
+}
+
+static int32_t add_equilibrium(tool *t, const tool_demand *demand) {
     size_t vertices = (size_t)t->mesh->vertex_count;
-    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), i;
+    int32_t *list = (int32_t *)take(t, vertices, sizeof *list), i, group = -1;
+    uint8_t *slides = (uint8_t *)take(t, vertices, sizeof *slides);
+    double *densities = edge_numbers(t, "densities", "density", t->density);
     gproj_supports supports = {.vertex = list};
     t->is_support = (bool *)take(t, vertices, sizeof *t->is_support);
-    if (list && t->is_support && (!t->loads || read_loads(t)) &&
-        mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support)) {
+    if (list && slides && t->is_support && t->exit_code == 0 && (!t->loads || read_loads(t)) && mark_supports(t)) {
         const gproj_loads loads = {.density = t->loads_given ? t->density : 1,
+                                   .edge_density = densities,
                                    .area_load = t->area_load,
                                    .snow = t->snow,
                                    .point_load = t->point_load};
         for (i = 0; i < t->mesh->vertex_count; ++i)
-            if (t->is_support[i]) list[supports.count++] = i;
+            if (t->is_support[i]) slides[supports.count] = t->slides ? t->slides[i] : 0, list[supports.count++] = i;
+        if (t->slides) supports.slides = slides;
         if (supports.count == 0)
             fail(t, EXIT_USAGE, "%s",
                  t->supports.text ? "--supports names no vertex"
                                   : "there is no support: the mesh has no boundary, so name some by --supports");
         else
-            gproj_add_equilibrium(t->form, &loads, &supports, demand->weight);
+            group = gproj_add_equilibrium(t->form, &loads, &supports, demand->weight);
     }
-    free(list);
-    return -1;
+    free(list), free(slides), free(densities);
+    return group;
 }
 
 static int32_t add_stress(tool *t, const tool_demand *demand) {
-    return gproj_add_stress_bounds(t->form, t->mesh->edge_count, NULL, NULL, demand->min, demand->max, demand->weight);
+    double *sections = edge_numbers(t, "sections", "section", 1);
+    int32_t group = -1;
+    if (t->exit_code == 0)
+        group = gproj_add_stress_bounds(t->form, t->mesh->edge_count, NULL, sections, demand->min, demand->max,
+                                        demand->weight);
+    free(sections);
+    return group;
 }
 
 /* ---- the table of options ---- */
@@ -1418,6 +1509,13 @@ static const tool_option options[] = {
      "binary STL those of floats; STL has triangles only",
      set_encoding, SETS(encoding)},
     {"file-limit", "MB", "files are read up to this size (1024)", set_file_limit, SETS(file_limit)},
+
+    {"problem", "FILE",
+     "JSON: the options as keys without dashes (\"planar\": true, \"fix\": [\"corners\", \"3,4\"]; \"input\": the "
+     "INPUT), which the command line takes the place of, and sections for more: see README",
+     set_path, SETS(problem_path)},
+    {"write-problem", "FILE", "what the command line and --problem mean, as a --problem", set_output,
+     SETS(output[OUTPUT_PROBLEM])},
 
     {"fill", "CURVE",
      "instead of INPUT: quads fill the curve in this OBJ file: its first closed polyline, else its boundary, else its "
@@ -1503,6 +1601,8 @@ static const tool_option options[] = {
     {"snow", "Q", "each face bears Q times its plan area", set_load, SETS(snow), .needs = &statics},
     {"loads", "FILE", "forces on vertices: CSV with the lines VERTEX,FX,FY,FZ", set_loads_file, SETS(loads),
      .needs = &statics},
+    {"start-forces", "FILE", "the forces start from those of the edges in this file, as --forces writes it", set_path,
+     SETS(start_forces), .needs = &statics},
     {"force-fairness", "[=W]", "opposite edges of quads carry equal forces (a wish; W: 1 if left out)", set_wish, 0,
      SOFT, STATICS, .build = gproj_add_force_fairness, .needs = &statics},
 
@@ -1546,6 +1646,9 @@ static const tool_option options[] = {
     {"forces", "FILE",
      "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I",
      set_output, SETS(output[OUTPUT_FORCES]), .needs = &statics},
+    {"residuals", "FILE",
+     "CSV: group,place,element,residual, what each vertex, edge and face lacks (mean edge lengths)", set_output,
+     SETS(output[OUTPUT_RESIDUALS])},
     {"picture", "FILE",
      "SVG: the result, its faces in the colours of --colour; with --equilibrium also forces as widths of edges "
      "(compression blue, tension orange), and without --planar coloured by how far the faces are from standing by "
@@ -1666,8 +1769,8 @@ static void print_help(void) {
 
 /* ---- the command line ---- */
 
-/* `word` is the whole argument, `name` the option in it. */
-static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
+/* Finds the option that a mistyped name means; -1: none is like it. */
+static int similar_option(const char *name, size_t size) {
     int i, best = -1, least = size < 5 ? 2 : 3; /* two edits, in a short name one, make a typing error */
     for (i = 0; i < OPTION_COUNT; ++i) {
         const char *known = options[i].name;
@@ -1675,9 +1778,32 @@ static bool fail_unknown(tool *t, const char *word, const char *name, size_t siz
         if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
         if (distance < least) best = i, least = distance;
     }
+    return best;
+}
+
+/* Finds the row of an option; -1: there is none of this name. */
+static int find_option(const char *name) {
+    int i = 0;
+    while (i < OPTION_COUNT && strcmp(options[i].name, name) != 0) ++i;
+    return i < OPTION_COUNT ? i : -1;
+}
+
+/* `word` is the whole argument, `name` the option in it. */
+static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
+    int best = similar_option(name, size);
     if (best < 0) return fail(t, EXIT_USAGE, "there is no option %.*s", (int)(name + size - word), word);
     return fail(t, EXIT_USAGE, "there is no option %.*s; did you mean --%s?", (int)(name + size - word), word,
                 options[best].name);
+}
+
+/* Keeps the value (NULL: none) of the option in a row, and sets what it means. */
+static bool give(tool *t, int row, const char *value) {
+    const tool_option *option = &options[row];
+    t->seen[row] = true;
+    t->line_of[row] = t->line;
+    t->word[t->word_count].row = row;
+    t->word[t->word_count++].value = value;
+    return option->read(t, place_of(t, row), option->name, value);
 }
 
 /* Reads the option at argv[*i], and the value behind it. */
@@ -1694,14 +1820,13 @@ static bool read_option(tool *t, int argc, char **argv, int *i) {
     if (!option) return fail_unknown(t, word, name, size);
     if (t->seen[option - options] && !option->repeatable)
         return fail(t, EXIT_USAGE, "--%s is given twice", option->name);
-    t->seen[option - options] = true;
     if (value && !option->value[0]) return fail(t, EXIT_USAGE, "--%s takes no value", option->name);
     if (!value && option->value[0] && option->value[0] != '[') {
         if (*i + 1 >= argc || strncmp(argv[*i + 1], "--", 2) == 0)
             return fail(t, EXIT_USAGE, "--%s needs a value: --%s %s", option->name, option->name, option->value);
         value = argv[++*i];
     }
-    return option->read(t, place_of(t, (int)(option - options)), option->name, value);
+    return give(t, (int)(option - options), value);
 }
 
 static bool read_input_name(tool *t, const char *word, const char *before) {
@@ -1718,6 +1843,8 @@ static bool read_input_name(tool *t, const char *word, const char *before) {
 /* Finds out whether there is something to do; --closeness 0 alone asks for nothing. */
 static bool anything_asked(const tool *t) {
     int i;
+    for (i = 0; i < GPROJX_SECTION_COUNT; ++i)
+        if (gprojx_sections[i].build && problem_section(t, gprojx_sections[i].key)) return true;
     for (i = 0; i < OPTION_COUNT; ++i)
         if (t->seen[i] && options[i].kind != SETTING &&
             (options[i].place != PLACE(closeness) || t->closeness.weight > 0))
@@ -1735,9 +1862,12 @@ static bool anything_wished(tool *t) {
 /* Refuses options that mean nothing without another one. */
 static bool check_needs(tool *t) {
     int i;
-    for (i = 0; i < OPTION_COUNT; ++i)
+    for (i = 0; i < OPTION_COUNT; ++i) {
+        t->line = t->line_of[i];
         if (t->seen[i] && options[i].needs && !is_given(t, options[i].needs->place))
             return fail(t, EXIT_USAGE, "--%s %s", options[i].name, options[i].needs->why);
+    }
+    t->line = 0;
     return true;
 }
 
@@ -1754,6 +1884,42 @@ static bool is_foreign(const tool *t, int output) {
     return t->output[output].path && format_named(t->output[output].path) != GPROJX_NEITHER;
 }
 
+/* Refuses sections of the problem that mean nothing without an option. */
+static bool check_sections(tool *t) {
+    static const struct {
+        const char *section, *option;
+    } needs[] = {{"densities", "equilibrium"}, {"sections", "stress"}, {"handles", "subdivide"}};
+    const gprojx_value *array, *item, *level;
+    size_t k;
+    for (k = 0; k < sizeof needs / sizeof needs[0]; ++k) {
+        array = problem_section(t, needs[k].section);
+        t->line = array ? array->line : 0;
+        if (array && !t->seen[find_option(needs[k].option)])
+            return fail(t, EXIT_REFUSED, "\"%s\" needs the key \"%s\"", needs[k].section, needs[k].option);
+    }
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        level = gprojx_member(&t->problem, item, "level");
+        t->line = item->line;
+        if (level && level->number > t->subdivision.levels)
+            return fail(t, EXIT_REFUSED, "\"handles\": there is no level %s; the last is %ld", level->text,
+                        (long)t->subdivision.levels);
+    }
+    t->line = 0;
+    return true;
+}
+
+/* Refuses words that JSON cannot keep. */
+static bool check_written_problem(tool *t) {
+    int32_t i;
+    for (i = -1; t->output[OUTPUT_PROBLEM].path && i < t->word_count; ++i) {
+        const char *text = i < 0 ? t->input : t->word[i].value;
+        for (; text && *text; text += gprojx_utf8_size(text))
+            if (gprojx_utf8_size(text) == 0)
+                return fail(t, EXIT_USAGE, "--write-problem: '%s' is not UTF-8", i < 0 ? t->input : t->word[i].value);
+    }
+    return true;
+}
+
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     int i;
@@ -1768,13 +1934,17 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE,
                     "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
                     "--fairness 0.2)");
-    if (!check_needs(t)) return false;
+    if (!check_needs(t) || !check_sections(t) || !check_written_problem(t)) return false;
     if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
     if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
+    if (t->output[OUTPUT_RESIDUALS].path && strcmp(t->output[OUTPUT_RESIDUALS].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--residuals writes to a file: give its name");
+    if (t->output[OUTPUT_PROBLEM].path && strcmp(t->output[OUTPUT_PROBLEM].path, "-") == 0)
+        return fail(t, EXIT_USAGE, "--write-problem writes to a file: give its name");
     if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--state is a file: give its name");
     output = t->output[OUTPUT_PANELS].path;
@@ -1795,14 +1965,136 @@ static bool check_options(tool *t) {
     return true;
 }
 
+/* ---- the problem file ---- */
+
+/* Reads the value of an option's key: a string or a number as the option's value, true for none. */
+static bool give_value(tool *t, int row, const gprojx_value *v) {
+    const char *syntax = options[row].value;
+    bool without = syntax[0] == 0 || syntax[0] == '[';
+    t->line = v->line;
+    if (v->kind == GPROJX_JSON_LITERAL && v->text[0] == 't' && without) return give(t, row, NULL);
+    if ((v->kind == GPROJX_JSON_STRING || v->kind == GPROJX_JSON_NUMBER) && syntax[0]) return give(t, row, v->text);
+    return fail(t, EXIT_REFUSED, "\"%s\": expected %s%s%s%s", options[row].name, without ? "true" : "",
+                without && syntax[0] ? ", or " : "", syntax[0] ? "a string or number " : "", syntax);
+}
+
+/* Reads a key that is an option's name; the command line takes the place of it. */
+static bool read_key(tool *t, int row, const gprojx_value *v) {
+    const gprojx_value *inside;
+    if (t->seen[row]) return true;
+    if (v->kind != GPROJX_JSON_ARRAY || !options[row].repeatable) return give_value(t, row, v);
+    for (inside = gprojx_inside(v); inside; inside = gprojx_after(&t->problem, inside))
+        if (!give_value(t, row, inside)) return false;
+    return true;
+}
+
+/* Makes room for the words of the problem behind those of the command line. */
+static bool grow_words(tool *t, size_t room) {
+    const gprojx_value *v;
+    void *fix, *glide, *move, *group, *word;
+    for (v = gprojx_inside(t->problem.value); v; v = gprojx_after(&t->problem, v)) {
+        int row = find_option(v->key);
+        bool repeats = row >= 0 && options[row].repeatable && v->kind == GPROJX_JSON_ARRAY;
+        t->line = v->line;
+        if (repeats && v->count > MOST_REPEATS)
+            return fail(t, EXIT_REFUSED, "\"%s\" has more than %d values", v->key, (int)MOST_REPEATS);
+        room += 1 + (repeats ? (size_t)v->count : 0);
+    }
+    if ((fix = realloc(t->fix, room * sizeof *t->fix))) t->fix = (tool_demand *)fix;
+    if ((glide = realloc(t->glide, room * sizeof *t->glide))) t->glide = (tool_demand *)glide;
+    if ((move = realloc(t->move, room * sizeof *t->move))) t->move = (tool_move *)move;
+    if ((group = realloc(t->move_group, room * sizeof *t->move_group))) t->move_group = (int32_t *)group;
+    if ((word = realloc(t->word, room * sizeof *t->word))) t->word = (tool_word *)word;
+    return (fix && glide && move && group && word) || fail_memory(t);
+}
+
+static gproj_mesh *load_for_problem(void *user, const char *path) {
+    return load((tool *)user, path, strlen(path), NULL);
+}
+
+/* Tells whether the option in a row is for the command line alone. */
+static bool is_for_command_line(int row) {
+    size_t place = options[row].place;
+    return place == PLACE(problem_path) || place == PLACE(output[OUTPUT_PROBLEM]) || place == PLACE(help) ||
+           place == PLACE(version);
+}
+
+static bool read_problem_key(tool *t, const gprojx_value *v) {
+    const struct gprojx_section *section = gprojx_find_section(v->key);
+    gproj_error error;
+    int row = find_option(v->key), similar;
+    t->line = v->line;
+    if (section) {
+        t->line = 0; /* the sentence has one */
+        return gprojx_check_section(&t->problem, section, v, &error) || fail_problem(t, &error);
+    }
+    if (strcmp(v->key, "input") == 0) {
+        if (v->kind != GPROJX_JSON_STRING) return fail(t, EXIT_REFUSED, "\"input\": expected the path of a mesh");
+        return t->input || read_input_name(t, v->text, NULL);
+    }
+    if (row >= 0 && !is_for_command_line(row)) return read_key(t, row, v);
+    similar = row < 0 ? similar_option(v->key, strlen(v->key)) : -1;
+    return fail(t, EXIT_REFUSED, "there is no key \"%.60s\"%s%s%s", v->key, similar < 0 ? "" : "; did you mean \"",
+                similar < 0 ? "" : options[similar].name, similar < 0 ? "" : "\"?");
+}
+
+/* Reads the file of --problem. room: words that the command line has at most. */
+static bool read_problem(tool *t, size_t room) {
+    const gprojx_value *v;
+    gproj_error error;
+    size_t length;
+    char *text = load_file(t, t->problem_path, gprojx_any_text, &length);
+    if (!text) return false;
+    t->problem.host = &t->host, t->problem.load = load_for_problem, t->problem.user = t;
+    if (!gprojx_problem_parse(&t->problem, text, length, &error)) return fail_problem(t, &error);
+    if (!grow_words(t, room)) return false;
+    for (v = gprojx_inside(t->problem.value); v; v = gprojx_after(&t->problem, v))
+        if (!read_problem_key(t, v)) return false;
+    t->line = 0;
+    return true;
+}
+
+/* Writes the words of an option as the value of its key. */
+static void write_key(const tool *t, gprojx_json *j, int row) {
+    int32_t i;
+    bool repeatable = options[row].repeatable;
+    if (repeatable) gprojx_json_open(j, options[row].name, '[');
+    for (i = 0; i < t->word_count; ++i) {
+        if (t->word[i].row != row) continue;
+        if (t->word[i].value)
+            gprojx_json_string(j, repeatable ? NULL : options[row].name, t->word[i].value);
+        else
+            gprojx_json_next(j, options[row].name), fputs("true", j->file);
+    }
+    if (repeatable) gprojx_json_close(j, ']');
+}
+
+static gproj_code write_problem(tool *t, FILE *file) {
+    gprojx_json j = {file, 0, false, false};
+    int i;
+    gprojx_json_open(&j, NULL, '{');
+    if (!t->fill) gprojx_json_string(&j, "input", t->input);
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && !is_for_command_line(i)) write_key(t, &j, i);
+    for (i = 0; i < GPROJX_SECTION_COUNT; ++i) {
+        const gprojx_value *section = problem_section(t, gprojx_sections[i].key);
+        if (section) gprojx_problem_write_value(&j, &t->problem, section);
+    }
+    gprojx_json_close(&j, '}');
+    fputc('\n', file);
+    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
+}
+
 static bool read_command_line(tool *t, int argc, char **argv) {
     bool plain = false; /* after "--" */
+    size_t room = (size_t)argc + 1;
     int i;
-    t->fix = (tool_demand *)take(t, (size_t)argc, sizeof *t->fix);
-    t->glide = (tool_demand *)take(t, (size_t)argc, sizeof *t->glide);
-    t->move = (tool_move *)take(t, (size_t)argc, sizeof *t->move);
-    t->move_group = (int32_t *)take(t, (size_t)argc, sizeof *t->move_group);
-    if (!t->fix || !t->glide || !t->move || !t->move_group) return false;
+    t->fix = (tool_demand *)take(t, room, sizeof *t->fix);
+    t->glide = (tool_demand *)take(t, room, sizeof *t->glide);
+    t->move = (tool_move *)take(t, room, sizeof *t->move);
+    t->move_group = (int32_t *)take(t, room, sizeof *t->move_group);
+    t->word = (tool_word *)take(t, room, sizeof *t->word);
+    if (!t->fix || !t->glide || !t->move || !t->move_group || !t->word) return false;
     for (i = 1; i < argc && !t->help && !t->version; ++i) {
         if (!plain && strcmp(argv[i], "--") == 0)
             plain = true;
@@ -1811,7 +2103,8 @@ static bool read_command_line(tool *t, int argc, char **argv) {
         } else if (!read_input_name(t, argv[i], i > 1 && !plain ? argv[i - 1] : NULL))
             return false;
     }
-    return t->help || t->version || check_options(t);
+    if (t->help || t->version) return true;
+    return (!t->problem_path || read_problem(t, room)) && check_options(t);
 }
 
 /* ---- the form ---- */
@@ -1837,19 +2130,79 @@ static bool add_option(tool *t, int row) {
     else if (demand->weight > 0)
         group = option->build ? option->build(t->form, demand->weight)
                               : option->build_edges(t->form, t->mesh->edge_count, NULL, demand->weight);
+    t->group_of[row] = group;
     if (option->kind == SOFT && group >= 0) schedule_wish(t, demand, group);
     return t->exit_code == 0;
 }
 
-/* Adds the options that were given, stage by stage in the order of the table, whatever theirs on the command line. */
+/* Reads the lines edge,I,J,W of a file of --forces; others are passed over. */
+static bool read_forces(tool *t, const char *text, double *density) {
+    const char *line = text;
+    long number = 1;
+    for (; *line; ++number) {
+        size_t size = strcspn(line, "\r\n");
+        double field[3];
+        int32_t edge = -1;
+        if (strncmp(line, "edge,", 5) == 0) {
+            bool good = gprojx_read_fields(line + 5, size - 5, 3, field);
+            if (!good) return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W", t->start_forces, number);
+            if (gprojx_is_vertex(t->mesh, field[0]) && gprojx_is_vertex(t->mesh, field[1]))
+                edge = gprojx_edge_between(t->mesh, (int32_t)field[0], (int32_t)field[1]);
+            if (edge < 0)
+                return fail(t, EXIT_REFUSED, "%s:%ld: there is no edge between the vertices %g and %g", t->start_forces,
+                            number, field[0], field[1]);
+            density[edge] = field[2];
+        }
+        line += strcspn(line, "\n");
+        line += *line != 0;
+    }
+    return true;
+}
+
+/* Lets the forces start from those in the file of --start-forces; edges that it does not name have none. */
+static bool start_from_forces(tool *t) {
+    char *text = load_text(t, t->start_forces);
+    double *density = (double *)take(t, (size_t)t->mesh->edge_count, sizeof *density);
+    gproj_error error;
+    if (text && density && read_forces(t, text, density) && gproj_set_forces(t->form, density, &error) != GPROJ_OK)
+        fail_library(t, t->start_forces, &error);
+    free(text), free(density);
+    return t->exit_code == 0;
+}
+
+/* Sets the weights by element that the problem gives to options. */
+static bool set_weights(tool *t) {
+    const gprojx_value *array = problem_section(t, "weights"), *item;
+    gproj_error error;
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        const char *of = gprojx_member(&t->problem, item, "of")->text;
+        int row = find_option(of);
+        t->line = item->line;
+        if (row < 0 || !t->seen[row]) return fail(t, EXIT_REFUSED, "\"weights\": there is no key \"%.60s\"", of);
+        t->line = 0;
+        if (!gprojx_problem_weigh(&t->problem, item, t->group_of[row], &error)) return fail_problem(t, &error);
+    }
+    return true;
+}
+
+/* Adds the options that were given, stage by stage in the order of the table, whatever theirs on the command line; then
+   the sections of the problem. */
 static bool build_form(tool *t) {
+    gproj_error error;
     int stage, i;
     t->form = gproj_form_create(t->mesh, &t->host);
     if (!t->form) return fail_memory(t);
+    for (i = 0; i < OPTION_COUNT; ++i) t->group_of[i] = -1;
+    if (t->problem_path && !gprojx_problem_begin(&t->problem, t->mesh, t->form, &error)) return fail_problem(t, &error);
     for (stage = NO_STAGE + 1; stage < STAGE_COUNT; ++stage)
-        for (i = 0; i < OPTION_COUNT; ++i)
+        for (i = 0; i < OPTION_COUNT; ++i) {
+            t->line = t->line_of[i];
             if (t->seen[i] && (int)options[i].stage == stage && !add_option(t, i)) return false;
-    return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
+        }
+    t->line = 0;
+    if (gproj_form_error(t->form)->code != GPROJ_OK) return fail_library(t, NULL, gproj_form_error(t->form));
+    if (t->problem_path && !gprojx_problem_build(&t->problem, &error)) return fail_problem(t, &error);
+    return set_weights(t) && (!t->start_forces || start_from_forces(t));
 }
 
 /* ---- progress ---- */
@@ -2185,6 +2538,28 @@ static gproj_code write_forces(tool *t, FILE *file) {
     return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
 
+/* Writes what elements lack in each group whose rows belong to elements; those that lack nothing are left out. */
+static gproj_code write_residuals(tool *t, FILE *file) {
+    static const char *const names[] = {"vertex", "edge", "face"};
+    const int32_t counts[] = {t->mesh->vertex_count, t->mesh->edge_count, t->mesh->face_count};
+    int32_t groups = gproj_system_group_count(gproj_form_system(t->form)), g, i;
+    double *residual = (double *)take(t, (size_t)counts[0] + (size_t)counts[1] + (size_t)counts[2], sizeof *residual);
+    if (!residual) return GPROJ_ERROR_MEMORY;
+    fputs("group,place,element,residual\n", file);
+    for (g = 0; g < groups; ++g) {
+        gproj_group_info info = gproj_form_group_info(t->form, g);
+        int32_t kind = (int32_t)info.place - (int32_t)GPROJ_PLACE_VERTEX;
+        if (kind < 0 || kind > 2 || gproj_form_residuals(t->form, g, residual, NULL) != GPROJ_OK) continue;
+        for (i = 0; i < counts[kind]; ++i) {
+            if (!(residual[i] > 0)) continue;
+            fprintf(file, "%s,%s,%ld,", info.name, names[kind], (long)i);
+            write_number(file, residual[i], '\n');
+        }
+    }
+    free(residual);
+    return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
+}
+
 static bool write_piece(void *user, const char *text, size_t size) {
     return fwrite(text, 1, size, (FILE *)user) == size;
 }
@@ -2410,6 +2785,8 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_SUPPORT], write_support) ||
         !write_output(t, &t->output[OUTPUT_PANELS], write_panels) ||
         !write_output(t, &t->output[OUTPUT_PANEL_LIST], write_panel_list) ||
+        !write_output(t, &t->output[OUTPUT_RESIDUALS], write_residuals) ||
+        !write_output(t, &t->output[OUTPUT_PROBLEM], write_problem) ||
         !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
@@ -2478,7 +2855,7 @@ static double support_movement(const tool *t) {
     int32_t v, k;
     for (v = 0; v < t->mesh->vertex_count; ++v) {
         double square = 0;
-        for (k = 0; t->is_support[v] && k < 3; ++k) {
+        for (k = 0; t->is_support[v] && !(t->slides && t->slides[v]) && k < 3; ++k) {
             double d = t->mesh->position[3 * (size_t)v + (size_t)k] - t->original[3 * (size_t)v + (size_t)k];
             square += d * d;
         }
@@ -2573,6 +2950,8 @@ static void clean_up(tool *t) {
     free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade);
     gprojx_history_free(&t->history);
+    gprojx_problem_free(&t->problem); /* which texts of options point into */
+    free(t->word), free(t->slides);
 }
 
 int main(int argc, char **argv) {
