@@ -191,8 +191,6 @@ typedef struct tool {
     int exit_code; /* once something has failed */
 } tool;
 
-static void print_plain(FILE *file, const char *text) { gprojx_print_plain(file, text); }
-
 /* Prints a failure's sentence and keeps the exit code; every failure passes through here. Returns false. */
 static bool fail(tool *t, int exit_code, const char *format, ...) {
     char sentence[8192];
@@ -205,8 +203,8 @@ static bool fail(tool *t, int exit_code, const char *format, ...) {
     vsnprintf(sentence, sizeof sentence, format, list);
     va_end(list);
     fputs("guidedproj: ", stderr);
-    if (t->line > 0) print_plain(stderr, t->problem_path), fprintf(stderr, ":%ld: ", (long)t->line);
-    print_plain(stderr, sentence);
+    if (t->line > 0) gprojx_print_plain(stderr, t->problem_path), fprintf(stderr, ":%ld: ", (long)t->line);
+    gprojx_print_plain(stderr, sentence);
     fputs(exit_code == EXIT_USAGE ? "\n(guidedproj --help lists all options)\n" : "\n", stderr);
     return false;
 }
@@ -2739,7 +2737,7 @@ static void put_back(tool *t, int32_t count) {
         if (!output->path || output->device) continue;
         if (output->kept && rename(output->kept, output->target) != 0) {
             fputs("guidedproj: the old file is now ", stderr);
-            print_plain(stderr, output->kept);
+            gprojx_print_plain(stderr, output->kept);
             fputc('\n', stderr);
         } else if (output->kept)
             unlink(output->kept); /* renaming does nothing where both are names of one file */
@@ -2806,7 +2804,7 @@ static bool finish_printing(tool *t) {
 static void print_mesh(const tool *t) {
     const gproj_mesh *mesh = t->mesh;
     int32_t degree, shown = 0;
-    print_plain(stdout, file_name(t->input));
+    gprojx_print_plain(stdout, file_name(t->input));
     printf(": %ld vertices, %ld edges, %ld faces (", (long)mesh->vertex_count, (long)mesh->edge_count,
            (long)mesh->face_count);
     for (degree = gprojx_next_degree(mesh, 0); degree > 0 && shown < 6;
