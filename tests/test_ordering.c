@@ -603,7 +603,7 @@ GPROJT_TEST(dissection_capacities) {
 /* The cut that was chosen: its weights are those counted here, and no separator in its band is lighter. */
 static void check_cut(gproji_nd *nd, gproji_nd_cut *cut, unsigned char *side) {
     bool exact = nd->nodes >= GPROJI_ND_EXACT || nd->nodes > nd->kept / 2;
-    double below = 0, low = 0, high = 0, weight[3], beside[2], cost;
+    double below = 0, low = 0, high = 0, weight[3] = {0, 0, 0}, beside[2], cost;
     int32_t i, k, units = 0;
     for (i = 0; i < nd->nodes; ++i) {
         bool lower = cut->coordinate[i] < cut->at, meets = false;
