@@ -24,6 +24,7 @@ refuses() { # refuses SENTENCE ARGUMENTS...: exit code 2 and a part of the messa
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >triangle.obj
 refuses '^usage' --nonsense
 refuses '^usage' --iterations none
+refuses '^usage' --iterations 10x
 refuses 'no faces with more than 3 sides' --mesh triangle.obj
 refuses 'nowhere.obj' --mesh nowhere.obj
 

@@ -108,14 +108,22 @@ static void compare_usage(void) {
     exit(2);
 }
 
+/* A whole number from 1 to 100,000; 0: it is none. */
+static int32_t compare_read_count(const char *text) {
+    char *end;
+    long count = strtol(text, &end, 10);
+    return end != text && !*end && count >= 1 && count <= 100000 ? (int32_t)count : 0;
+}
+
 static compare_options compare_read_options(int count, char **argument) {
     compare_options options = {false, 0, NULL, NULL};
+    bool counted = false;
     int k;
     for (k = 1; k < count; ++k) {
         if (strcmp(argument[k], "--quick") == 0)
             options.quick = true;
         else if (strcmp(argument[k], "--iterations") == 0 && k + 1 < count)
-            options.iterations = atoi(argument[++k]) > 0 ? atoi(argument[k]) : -1;
+            options.iterations = compare_read_count(argument[++k]), counted = true;
         else if (strcmp(argument[k], "--mesh") == 0 && k + 1 < count)
             options.mesh = argument[++k];
         else if (argument[k][0] != '-' && !options.folder)
@@ -123,8 +131,8 @@ static compare_options compare_read_options(int count, char **argument) {
         else
             compare_usage();
     }
-    if (options.iterations < 0 || options.iterations > 100000) compare_usage();
-    if (options.iterations == 0) options.iterations = options.quick ? 100 : 1000;
+    if (counted && options.iterations == 0) compare_usage();
+    if (!counted) options.iterations = options.quick ? 100 : 1000;
     return options;
 }
 

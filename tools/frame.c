@@ -238,11 +238,6 @@ static void print_help(void) {
          "  4 out of memory");
 }
 
-static bool ends_with(const char *path, const char *ending) {
-    size_t size = strlen(path), length = strlen(ending);
-    return size > length && strcmp(path + size - length, ending) == 0;
-}
-
 static bool read_command_line(tool *t, int argc, char **argv) {
     int i, k;
     for (i = 1; i < argc && !t->help; ++i) {
@@ -266,9 +261,9 @@ static bool read_command_line(tool *t, int argc, char **argv) {
     }
     if (t->help) return true;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: frame MESH.obj");
-    if (t->report && !ends_with(t->report, ".json"))
+    if (t->report && !gprojx_has_ending(t->report, ".json"))
         return fail(t, EXIT_USAGE, "the report '%s' must end in .json", t->report);
-    if (t->picture && !ends_with(t->picture, ".svg"))
+    if (t->picture && !gprojx_has_ending(t->picture, ".svg"))
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->picture);
     return true;
 }

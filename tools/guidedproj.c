@@ -270,14 +270,6 @@ static tool_demand split_word(const char *text, double usual_weight) {
 
 static bool has_constant_weight(const tool_demand *demand) { return demand->decay >= 1 && demand->last == 0; }
 
-static bool has_ending(const char *path, const char *ending) {
-    size_t size = strlen(path), length = strlen(ending), i;
-    if (size <= length) return false;
-    for (i = 0; i < length; ++i)
-        if (tolower((unsigned char)path[size - length + i]) != ending[i]) return false;
-    return true;
-}
-
 /* Counts the edits (insert, delete, replace, swap neighbours) that turn one word into another [Damerau 1964]. */
 static int edit_distance(const char *a, size_t size, const char *b) {
     enum {
@@ -804,7 +796,7 @@ static const char *foreign_ending(const char *path) {
                                           ".ifc",  ".x3d", ".wrl",  ".usd", ".usdz", ".vtk", ".blend"};
     size_t i;
     for (i = 0; i < sizeof endings / sizeof endings[0]; ++i)
-        if (has_ending(path, endings[i])) return endings[i];
+        if (gprojx_has_ending(path, endings[i])) return endings[i];
     return "";
 }
 
@@ -840,12 +832,12 @@ static char *load_text(tool *t, const char *path) {
 
 /* Tells the formats that the library leaves to formats.h by the ending. */
 static gprojx_format format_named(const char *path) {
-    return has_ending(path, ".stl") ? GPROJX_STL : has_ending(path, ".ply") ? GPROJX_PLY : GPROJX_NEITHER;
+    return gprojx_has_ending(path, ".stl") ? GPROJX_STL : gprojx_has_ending(path, ".ply") ? GPROJX_PLY : GPROJX_NEITHER;
 }
 
 /* Reads a file with the format of the ending, else of the first word. */
 static char *load_mesh_file(tool *t, const char *path, gprojx_format *format, size_t *size) {
-    bool named = has_ending(path, ".obj") || has_ending(path, ".off");
+    bool named = gprojx_has_ending(path, ".obj") || gprojx_has_ending(path, ".off");
     char *bytes;
     *format = format_named(path);
     bytes = load_file(t, path, *format != GPROJX_NEITHER ? NULL : named ? gprojx_any_text : is_obj_or_off, size);
@@ -865,9 +857,9 @@ static gproj_mesh *load(tool *t, const char *path, size_t size, gprojx_reading *
     if (text && foreign != GPROJX_NEITHER) {
         mesh = gprojx_mesh_read(text, length, foreign, reading, &t->host, &error);
     } else if (text) {
-        gproj_format format = has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
-                              : has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
-                                                         : GPROJ_FORMAT_DETECT;
+        gproj_format format = gprojx_has_ending(copy, ".obj")   ? GPROJ_FORMAT_OBJ
+                              : gprojx_has_ending(copy, ".off") ? GPROJ_FORMAT_OFF
+                                                                : GPROJ_FORMAT_DETECT;
         mesh = gproj_mesh_read(text, length, format, &t->host, &error);
         if (!mesh && error.code == GPROJ_ERROR_SYNTAX && *foreign_ending(copy) && !strstr(error.message, "as OBJ"))
             fail(t, EXIT_REFUSED,
@@ -1872,8 +1864,9 @@ static bool check_needs(tool *t) {
 /* Refuses names that do not end like a mesh file. */
 static bool check_mesh_output(tool *t, const tool_output *output) {
     const char *path = output->path;
-    if (!path || has_ending(path, ".obj") || has_ending(path, ".off") || has_ending(path, ".ply")) return true;
-    if (!has_ending(path, ".stl"))
+    if (!path || gprojx_has_ending(path, ".obj") || gprojx_has_ending(path, ".off") || gprojx_has_ending(path, ".ply"))
+        return true;
+    if (!gprojx_has_ending(path, ".stl"))
         return fail(t, EXIT_USAGE, "the output '%s' must end in .obj, .off, .stl or .ply", path);
     return t->encoding != GPROJX_BIG || fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
 }
@@ -1933,7 +1926,7 @@ static bool check_options(tool *t) {
                     "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
                     "--fairness 0.2)");
     if (!check_needs(t) || !check_sections(t) || !check_written_problem(t)) return false;
-    if (t->output[OUTPUT_PICTURE].path && !has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
+    if (t->output[OUTPUT_PICTURE].path && !gprojx_has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
         return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
@@ -1946,10 +1939,10 @@ static bool check_options(tool *t) {
     if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
         return fail(t, EXIT_USAGE, "--state is a file: give its name");
     output = t->output[OUTPUT_PANELS].path;
-    if (output && !has_ending(output, ".svg") && !has_ending(output, ".dxf"))
+    if (output && !gprojx_has_ending(output, ".svg") && !gprojx_has_ending(output, ".dxf"))
         return fail(t, EXIT_USAGE, "the panels '%s' must end in .svg or .dxf", output);
     output = t->output[OUTPUT_PANEL_LIST].path;
-    if (output && !has_ending(output, ".csv"))
+    if (output && !gprojx_has_ending(output, ".csv"))
         return fail(t, EXIT_USAGE, "the list of panels '%s' must end in .csv", output);
     for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i)
         if (!check_mesh_output(t, &t->output[i])) return false;
@@ -2568,8 +2561,8 @@ static gproj_code write_as(tool *t, gproj_mesh *mesh, int output, FILE *file) {
     gproj_error error;
     gproj_code code;
     if (foreign == GPROJX_NEITHER)
-        return gproj_mesh_write(mesh, has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ, write_piece, file,
-                                NULL);
+        return gproj_mesh_write(mesh, gprojx_has_ending(path, ".off") ? GPROJ_FORMAT_OFF : GPROJ_FORMAT_OBJ,
+                                write_piece, file, NULL);
     code = gprojx_mesh_write(mesh, foreign, t->encoding, write_piece, file, &error);
     if (code != GPROJ_OK && code != GPROJ_ERROR_FILE) fail_library(t, path, &error);
     return code;
@@ -2582,7 +2575,7 @@ static gproj_code write_offset(tool *t, FILE *file) { return write_as(t, t->offs
 static gproj_code write_support(tool *t, FILE *file) { return write_as(t, t->support, OUTPUT_SUPPORT, file); }
 
 static gproj_code write_panels(tool *t, FILE *file) {
-    bool dxf = has_ending(t->output[OUTPUT_PANELS].path, ".dxf");
+    bool dxf = gprojx_has_ending(t->output[OUTPUT_PANELS].path, ".dxf");
     return dxf ? gprojx_panels_dxf(file, t->panels) : gprojx_panels_svg(file, t->panels);
 }
 

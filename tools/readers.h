@@ -150,6 +150,15 @@ static bool gprojx_read_loads(const char *text, int32_t vertex_count, double *lo
 
 /* ---- files ---- */
 
+/* Does a path end so, in capitals or not, behind a name? */
+static bool gprojx_has_ending(const char *path, const char *ending) {
+    size_t size = strlen(path), length = strlen(ending), i;
+    if (size <= length) return false;
+    for (i = 0; i < length; ++i)
+        if (tolower((unsigned char)path[size - length + i]) != ending[i]) return false;
+    return true;
+}
+
 /* Does a file with these first bytes go on as a text? */
 typedef bool (*gprojx_is_text)(const void *bytes, size_t size);
 
