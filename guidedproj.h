@@ -13271,14 +13271,19 @@ GPROJ_API void gproj_mesh_face_area_vector(const gproj_mesh *mesh, int32_t face,
     if (mesh && face >= 0 && face < mesh->face_count) gproji_area_vector(mesh, mesh->position, face, area);
 }
 
+/* The length of an edge with other positions. */
+GPROJI_INLINE double gproji_edge_length(const gproj_mesh *mesh, const double *position, int32_t edge) {
+    const int32_t *end = mesh->origin + 2 * (size_t)edge;
+    return gproji_distance3(position + 3 * (size_t)end[0], position + 3 * (size_t)end[1]);
+}
+
 /* The mean edge length with other positions; 0 without edges. */
 GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *position) {
     const double unit = 1e-210;
     double sum = 0, d[3];
     int32_t h, k;
     if (mesh->edge_count == 0) return 0;
-    for (h = 0; h < mesh->halfedge_count; h += 2)
-        sum += gproji_distance3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1]);
+    for (k = 0; k < mesh->edge_count; ++k) sum += gproji_edge_length(mesh, position, k);
     sum /= mesh->edge_count;
     if (!(sum < 1e-140)) return sum;
     /* squares underflow in edges as short as these: measure them again in a smaller unit */
@@ -17192,7 +17197,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
     normals = gproji_normals_of(mesh, mesh->position);
     m.mean_edge = gproji_mean_edge(mesh, mesh->position);
     for (e = 0; e < mesh->edge_count; ++e) {
-        double length = gproji_distance3(gproji_corner_position(mesh, 2 * e), gproji_corner_position(mesh, 2 * e + 1));
+        double length = gproji_edge_length(mesh, mesh->position, e);
         if (e == 0 || length < m.min_edge) m.min_edge = length;
         if (length > m.max_edge) m.max_edge = length;
         m.length += length;
@@ -17267,9 +17272,7 @@ GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *p
     for (i = 0; i < GPROJI_DAMAGE_COUNT; ++i) d->first[i] = -1;
     /* 1. The least factor by which edges have grown, and at least 1: a mesh scaled up as a whole has no spikes. */
     for (i = 0; i < mesh->edge_count && grown > 1; ++i) {
-        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
-        double before = gproji_distance3(original + a, original + b),
-               now = gproji_distance3(position + a, position + b);
+        double before = gproji_edge_length(mesh, original, i), now = gproji_edge_length(mesh, position, i);
         if (before > 0) grown = gproji_fmin(grown, now / before);
     }
     if (!(grown > 1 && grown < HUGE_VAL)) grown = 1;
@@ -17288,9 +17291,7 @@ GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *p
     }
     /* 3. Edges. */
     for (i = 0; i < mesh->edge_count; ++i) {
-        size_t a = 3 * (size_t)mesh->origin[2 * i], b = 3 * (size_t)mesh->origin[2 * i + 1];
-        double before = grown * gproji_distance3(original + a, original + b);
-        double now = gproji_distance3(position + a, position + b);
+        double before = grown * gproji_edge_length(mesh, original, i), now = gproji_edge_length(mesh, position, i);
         gproji_count_damage(d, GPROJI_DAMAGE_EDGE, i, now < 0.1 * before && now < 0.1 * mean);
         gproji_count_damage(d, GPROJI_DAMAGE_SPIKE, i, before > 0 && now > 5 * before && now > 3 * mean);
         gproji_count_damage(d, GPROJI_DAMAGE_FOLDED, i, gproji_is_folded(&is, i) && !gproji_is_folded(&was, i));
@@ -19954,7 +19955,7 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     }
 }
 
-/* Passes segments, and t1, from which that of the next solve turns; during a solve it is among the numbers of the rows. */
+/* Passes segments, and t1, from which that of the next solve turns; during a solve it is among the rows' numbers. */
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     int32_t i, k, count;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
@@ -20420,12 +20421,6 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     }
 }
 
-/* An edge's original length, in internal units. */
-GPROJI_INTERNAL double gproji_original_length(const gproj_form *form, int32_t edge) {
-    const int32_t *origin = form->mesh->origin + 2 * (size_t)edge;
-    return gproji_distance3(form->original + 3 * (size_t)origin[0], form->original + 3 * (size_t)origin[1]);
-}
-
 static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 
@@ -20437,7 +20432,7 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
     group = gproji_new_group(form, &gproji_lengths_rule, weight);
     for (k = 0; k < count && gproji_form_ready(form); ++k) {
         int32_t edge = edges ? edges[k] : k;
-        double length = lengths ? lengths[k] * form->scale : gproji_original_length(form, edge);
+        double length = lengths ? lengths[k] * form->scale : gproji_edge_length(form->mesh, form->original, edge);
         gproj_term term[9];
         if (!(length > 0) || !gproji_is_finite(length)) {
             gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
@@ -20454,10 +20449,7 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
 GPROJI_INTERNAL void gproji_start_length(gproji_part *part) {
     double *x = gproj_system_values(part->form->system), mean = 0;
     int32_t k;
-    for (k = 0; k < part->count; ++k) {
-        const int32_t *end = part->form->mesh->origin + 2 * (size_t)part->vertex[k];
-        mean += gproji_distance3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1]) / part->count;
-    }
+    for (k = 0; k < part->count; ++k) mean += gproji_edge_length(part->form->mesh, x, part->vertex[k]) / part->count;
     x[*(const int32_t *)part->data] = mean;
 }
 
@@ -21710,8 +21702,7 @@ GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *
             out[3 * (size_t)v + (size_t)k] =
                 loads->point_load ? units.force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
     for (e = 0; e < mesh->edge_count; ++e) {
-        const double *a = x + 3 * (size_t)mesh->origin[2 * e], *b = x + 3 * (size_t)mesh->origin[2 * e + 1];
-        double half = 0.5 * units.per_length * gproji_density(loads, e) * gproji_distance3(a, b);
+        double half = 0.5 * units.per_length * gproji_density(loads, e) * gproji_edge_length(mesh, x, e);
         out[3 * (size_t)mesh->origin[2 * e] + 2] -= half;
         out[3 * (size_t)mesh->origin[2 * e + 1] + 2] -= half;
     }
@@ -22648,8 +22639,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
     for (e = 0; e < mesh->edge_count; ++e) {
         double w = gproji_force_density(form, e), length, force;
         if (form->statics->force[e] < 0) continue;
-        length = gproji_distance3(mesh->position + 3 * (size_t)mesh->origin[2 * e],
-                                  mesh->position + 3 * (size_t)mesh->origin[2 * e + 1]);
+        length = gproji_edge_length(mesh, mesh->position, e);
         force = w * length;
         m.load_path += fabs(force) * length;
         m.min_density = first ? w : gproji_fmin(m.min_density, w);
@@ -22827,7 +22817,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 
 /* ============================================================================================================
    >>corners   Faces keep their corners and edges. Uses platform, memory, error, vector, stream, system, loop, mesh,
-   measure, form, guard.
+   measure, form, catalogue, guard.
 
    Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular
    one may have lost an edge. So every corner of a face keeps a part of the area that it had
@@ -22853,8 +22843,8 @@ static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
 static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
-static const double gproji_edge_floor = 0.15;  /* part of its length asked of an edge, */
-static const double gproji_edge_kept = 0.5;    /* and that which a step has to leave of a short one */
+static const double gproji_edge_floor = 0.15;  /* asked of shorter edges */
+static const double gproji_edge_kept = 0.5;    /* a step that leaves less of a short edge is refused */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
     GPROJI_CORNER_TERMS = 18
@@ -22897,10 +22887,6 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
-GPROJI_INTERNAL double gproji_edge_length(const gproj_mesh *mesh, const double *x, int32_t edge) {
-    return gproji_distance3(x + 3 * (size_t)mesh->origin[2 * edge], x + 3 * (size_t)mesh->origin[2 * edge + 1]);
-}
-
 /* Returns which part of an area the row of a corner asks for, and gives the terms their coefficients. */
 GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t corner,
                                                gproj_term *term) {
@@ -22912,7 +22898,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
     gproji_corner_area(part->form->mesh, x, h, area);
     has = gproji_dot3(area, m) / guard->size[h];
-    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_corner_terms */
+    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_set_corner_terms */
     for (t = 0; t < GPROJI_CORNER_TERMS; t += 6)
         for (k = 0; k < 3; ++k) {
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
@@ -22922,11 +22908,11 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
                    : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
 }
 
-/* The same for an edge: which part of the squared length. */
+/* Likewise for an edge: which part of the squared length. */
 GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const double *x, int32_t edge, gproj_term *term) {
     double length = gproji_corners_of(part)->length[edge], asked;
     int32_t k;
-    for (k = 0; k < 3; ++k) { /* in the order of gproji_edge_terms */
+    for (k = 0; k < 3; ++k) { /* in the order of gproji_set_length_terms */
         term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
         term[3 * k + 2].a = -2 / (length * length);
     }
@@ -22959,9 +22945,9 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     gproji_linearise_corners((const gproji_part *)user);
 }
 
-/* The terms of a corner, without coefficients: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products
-   a_x b_y, - a_y b_x (m_z), a_y b_z, - a_z b_y (m_x), ... Returns their number. */
-GPROJI_INTERNAL int32_t gproji_corner_terms(const gproj_mesh *mesh, int32_t h, gproj_term *term) {
+/* Sets the terms of a corner, without coefficients: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products
+   a_x b_y, - a_y b_x (m_z), a_y b_z, - a_z b_y (m_x), ... */
+GPROJI_INTERNAL void gproji_set_corner_terms(const gproj_mesh *mesh, int32_t h, gproj_term *term) {
     int32_t vertex[3], c, k, count = 0;
     for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
     for (c = 0; c < 3; ++c)
@@ -22970,18 +22956,6 @@ GPROJI_INTERNAL int32_t gproji_corner_terms(const gproj_mesh *mesh, int32_t h, g
             gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
             gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
         }
-    return count;
-}
-
-/* The same for an edge: |b - a|^2 as a_x^2, b_x^2, - 2 a_x b_x, ... */
-GPROJI_INTERNAL int32_t gproji_edge_terms(const gproj_mesh *mesh, int32_t edge, gproj_term *term) {
-    int32_t a = 3 * mesh->origin[2 * edge], b = 3 * mesh->origin[2 * edge + 1], k, count = 0;
-    for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[count++], a + k, a + k, 0);
-        gproji_set_term(&term[count++], b + k, b + k, 0);
-        gproji_set_term(&term[count++], a + k, b + k, 0);
-    }
-    return count;
 }
 
 /* Adds the row of an item, without a weight yet. Returns the number, -1 after an error. */
@@ -22990,8 +22964,13 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
     int32_t edge = item - guard->edges, h = edge < 0 ? item / 2 : mesh->face[2 * edge] < 0 ? 2 * edge + 1 : 2 * edge;
-    int32_t count = edge < 0 ? gproji_corner_terms(mesh, h, term) : gproji_edge_terms(mesh, edge, term);
-    int32_t row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, mesh->face[h]);
+    int32_t row;
+    if (edge < 0)
+        gproji_set_corner_terms(mesh, h, term);
+    else
+        gproji_set_length_terms(mesh, edge, 0, term);
+    row = gproji_add_safeguard_row(part->form->system, part->group, edge < 0 ? GPROJI_CORNER_TERMS : 9, term, 0,
+                                   mesh->face[h]);
     if (row < 0) return -1;
     guard->item[row] = item;
     guard->row[item] = row;
@@ -23180,7 +23159,8 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
     g = gproji_group_at(form->system, part->group);
     for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
     x = gproj_system_values(form->system);
-    for (f = 0; wanted && f < mesh->face_count; ++f) { /* the sizes that corners and edges have now */
+    /* The sizes that corners and edges have now. */
+    for (f = 0; wanted && f < mesh->face_count; ++f) {
         double area[3], *axis = guard->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
@@ -23914,8 +23894,8 @@ GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_resul
 /* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
 GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_part *part;
-    for (part = form->part; part;
-         part = part->next) /* what refreshes keep, such as segments of curves, is of later ones */
+    /* What refreshes keep, such as segments of curves, is of later attempts. */
+    for (part = form->part; part; part = part->next)
         if (part->rule->acts && part->rule->acts->refresh && part->rule->acts->start) part->rule->acts->start(part);
     memcpy(gproj_system_values(form->system), end, (size_t)gproj_system_variable_count(form->system) * sizeof *end);
     gproji_see_here(form->system);
@@ -24102,8 +24082,8 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), gproj_keep(0));
 }
 
-/* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form gets those
-   that come in. */
+/* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form
+   gets those that come in. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], count = 0, k;
     bool in = gproji_comes_in(stream);

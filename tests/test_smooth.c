@@ -141,37 +141,29 @@ GPROJT_TEST(steps_are_bent) {
     }
 }
 
-/* Of twelve patches of planar faces within a fixed boundary at least two become sound in a later attempt. */
-GPROJT_TEST(later_attempts_help) {
-    int i, helped = 0;
-    for (i = 1; i <= 12; ++i) {
-        double planarity;
-        gproj_result result = gprojt_solve_twisted(5, 0.05 * i, gprojt_add_planar_fixed, &planarity);
-        helped += gprojt_is_sound(&result) && result.attempts > 1 && planarity <= 1e-12;
-    }
-    GPROJT_CHECK(helped >= 2);
-}
-
 static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
     gprojt_add_planar(form, user);
     gproj_add_gliding_boundary(form, 1);
 }
 
-/* Edges become short while the faces there keep their area, beside fixed corners above all: of these 36 patches at most 21
-   came out sound as long as only corners were kept, and 25 or more do, by any compiler and without SIMD. */
-GPROJT_TEST(edges_are_kept) {
+/* Small patches with a fixed or gliding boundary, some of which have hardly another way than to lose an edge: most stay
+   whole, because edges are kept as well as corners (with corners alone at least two fewer than asked here do), and some of
+   them in a later attempt. */
+GPROJT_TEST(patches_stay_whole) {
     static void (*const build[3])(gproj_form *form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
                                                                    gprojt_add_planar_gliding};
     static const int32_t sizes[3] = {5, 6, 5};
-    int i, k, sound = 0;
+    int i, k, whole = 0, helped = 0;
     for (k = 0; k < 3; ++k)
         for (i = 1; i <= 12; ++i) {
             double planarity;
             gproj_result result = gprojt_solve_twisted(sizes[k], 0.05 * i, build[k], &planarity);
-            sound += result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 && planarity <= 1e-12;
+            if (result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0 || planarity > 1e-12) continue;
+            ++whole;
+            helped += result.attempts > 1;
         }
-    if (sound < 23) printf("  %d sound\n", sound);
-    GPROJT_CHECK(sound >= 23);
+    if (whole < 23 || helped < 5) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
+    GPROJT_CHECK(whole >= 23 && helped >= 5);
 }
 
 typedef struct gprojt_attempts {
@@ -301,8 +293,7 @@ int main(void) {
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
     GPROJT_RUN(steps_are_bent);
-    GPROJT_RUN(later_attempts_help);
-    GPROJT_RUN(edges_are_kept);
+    GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(attempts);
     GPROJT_RUN(frames_and_states);
     GPROJT_RUN(solved_again);
