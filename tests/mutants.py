@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""mutants.py [--number N] [--seed S] [--section NAMES] [--again] [--only NUMBERS] [--jobs J] [--sanitized] - mutation testing of
-guidedproj.h.
+"""mutants.py [--number N] [--seed S] [--section NAMES] [--again] [--only NUMBERS] [--jobs J] [--sanitized]
+[--report] - mutation testing of guidedproj.h.
 
 Writes one copy of the header in which each of N small changes (mutants) can be chosen at run time (mutant schemata, Untch,
 Offutt, Harrold 1993), compiles the test programs and the tool with it once, finds which test cases reach which mutant, and
@@ -11,7 +11,8 @@ change makes no difference (then mutants.txt says why). One that takes much long
 Everything is in build/mutants: the copy of the project (tree), the list (mutants.json), one line a finished mutant
 (results.jsonl). A run that is stopped goes on where it was, as long as header, seed, number and sections are the same;
 --again tries survivors once more (after tests were added), --only 3,17 tries these, --jobs at a time (2). --sanitized tries
-what survives with the sanitized programs as well, --report only adds up what was tried. The last lines add up by section; the exit code is 0 whatever survives.
+what survives with the sanitized programs as well, --report only adds up what was tried. The last lines add up by section; the
+exit code is 0 whatever survives.
 """
 import argparse, hashlib, json, multiprocessing, os, random, re, resource, signal, subprocess, sys, time
 

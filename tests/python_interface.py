@@ -17,7 +17,7 @@ source = open(binding, encoding="utf-8").read()
 text = open(header, encoding="utf-8").read().split("#ifdef GUIDEDPROJ_IMPLEMENTATION")[0]
 text = re.sub(r"/\*.*?\*/", "", text, flags=re.S)
 left_out = guidedproj.LEFT_OUT
-kept = {name for name in left_out}
+kept = set(left_out)
 compared = 0
 
 

@@ -576,8 +576,7 @@ GPROJT_TEST(the_best_change_is_named) {
                 best = fmin(best, off);
                 if (side == named && c.edges[side] + by == to) named_off = off;
             }
-        if (!(named_off <= best + 1e-12)) printf("  %g %g\n", named_off, best);
-        GPROJT_CHECK(named_off <= best + 1e-12);
+        GPROJT_NEAR(named_off, best, 1e-12);
         less += to < given, ++odd;
     }
     GPROJT_CHECK(less > odd / 5 && less < odd);

@@ -413,19 +413,31 @@ static void check_parts(const gproji_nd *nd, int32_t *part_of) {
     }
 }
 
+/* A dissection with its memory, which end_dissection gives back. */
+static bool begin_dissection(gproji_nd *nd, gproji_pool *pool, gproji_heap *heap, const graph *g) {
+    *heap = gproji_heap_of(NULL);
+    memset(nd, 0, sizeof *nd);
+    nd->heap = heap, nd->graph = &g->view;
+    gproji_pool_start(pool, heap);
+    return gproji_nd_take(nd, pool);
+}
+
+static void end_dissection(gproji_nd *nd, gproji_pool *pool, gproji_heap *heap) {
+    gproji_give(heap, nd->band.block, nd->band.block_size, 1);
+    gproji_pool_give_all(pool);
+    GPROJT_CHECK(heap->account.used == 0);
+}
+
 GPROJT_TEST(dissection_separates) {
     static const int32_t kinds[] = {GRID, TORUS, HEXAGONS, SHUFFLED, TWO_GRIDS, RANDOM, FORCES, CUBES};
     int32_t k;
     for (k = 0; k < (int32_t)(sizeof kinds / sizeof kinds[0]); ++k) {
         graph g = make(kinds[k], 1200);
-        gproji_heap heap = gproji_heap_of(NULL);
+        gproji_heap heap;
         int32_t *part_of = (int32_t *)malloc(((size_t)g.nodes + 1) * sizeof(int32_t)), cuts = 0;
         gproji_pool pool;
         gproji_nd nd;
-        memset(&nd, 0, sizeof nd);
-        nd.heap = &heap, nd.graph = &g.view;
-        gproji_pool_start(&pool, &heap);
-        GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
+        GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
         gproji_nd_begin(&nd, g.total);
         while (nd.parts > 0) {
             int32_t before = nd.parts;
@@ -435,9 +447,7 @@ GPROJT_TEST(dissection_separates) {
             cuts += nd.parts > before;
         }
         GPROJT_CHECK(cuts > 4 || kinds[k] == RANDOM);
-        gproji_give(&heap, nd.band.block, nd.band.block_size, 1);
-        gproji_pool_give_all(&pool);
-        GPROJT_CHECK(heap.account.used == 0);
+        end_dissection(&nd, &pool, &heap);
         free(part_of), graph_free(&g);
     }
 }
@@ -642,14 +652,11 @@ GPROJT_TEST(dissection_weighs_and_separates) {
     int32_t k, cuts = 0, small = 0;
     for (k = 0; k < (int32_t)(sizeof kinds / sizeof kinds[0]); ++k) {
         graph g = make(kinds[k], 1500);
-        gproji_heap heap = gproji_heap_of(NULL);
+        gproji_heap heap;
         unsigned char *side = (unsigned char *)malloc((size_t)g.nodes);
         gproji_pool pool;
         gproji_nd nd;
-        memset(&nd, 0, sizeof nd);
-        nd.heap = &heap, nd.graph = &g.view;
-        gproji_pool_start(&pool, &heap);
-        GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
+        GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
         gproji_nd_begin(&nd, g.total);
         while (nd.parts > 0) {
             const gproji_nd_part part = nd.stack[nd.parts - 1];
@@ -664,8 +671,7 @@ GPROJT_TEST(dissection_weighs_and_separates) {
             }
             gproji_nd_next(&nd);
         }
-        gproji_give(&heap, nd.band.block, nd.band.block_size, 1);
-        gproji_pool_give_all(&pool);
+        end_dissection(&nd, &pool, &heap);
         free(side), graph_free(&g);
     }
     GPROJT_CHECK(cuts > 100 && small > 50);
@@ -680,7 +686,7 @@ GPROJT_TEST(dissection_orders_leaves) {
         graph g = graph_of(nodes + halos);
         static bool near[GPROJI_ND_LEAF + 150][GPROJI_ND_LEAF + 150];
         int32_t *part_of, order[GPROJI_ND_LEAF], edges = 3 * nodes;
-        gproji_heap heap = gproji_heap_of(NULL);
+        gproji_heap heap;
         gproji_pool pool;
         gproji_nd nd;
         gproji_nd_part part;
@@ -695,10 +701,7 @@ GPROJT_TEST(dissection_orders_leaves) {
         graph_finish(&g, 1);
         for (i = 0; i < n; ++i) g.weight[i] = tries % 2 ? 1 + gprojt_below(&seed, 300) : 3;
         graph_weigh(&g);
-        memset(&nd, 0, sizeof nd);
-        nd.heap = &heap, nd.graph = &g.view;
-        gproji_pool_start(&pool, &heap);
-        GPROJT_REQUIRE(gproji_nd_take(&nd, &pool));
+        GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
         /* The part is the first `nodes`, in the order of their names. */
         part_of = nd.copy[0].name;
         for (i = 0; i < nodes; ++i) {
@@ -731,7 +734,7 @@ GPROJT_TEST(dissection_orders_leaves) {
             for (i = 0; i < nodes; ++i)
                 for (j = 0; j < n && near[best][i]; ++j) near[i][j] |= j != i && near[best][j];
         }
-        gproji_pool_give_all(&pool);
+        end_dissection(&nd, &pool, &heap);
         graph_free(&g);
     }
 }

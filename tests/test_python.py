@@ -369,7 +369,7 @@ def test_errors():
     raises(ValueError, form.drag, [1, 2], start=[0, 500, 2], says="start")
     raises(Error, form.drag, [1, 2], start=[0, 2, 1])
     raises(ValueError, Mesh.load, "a\0b.obj", says="NUL")
-    raises(ValueError, form.add_lengths, [1, 2, 3], [1.0, 2.0])
+    raises(ValueError, form.add_lengths, [1, 2, 3], [1.0, 2.0], says="lengths: one number or 3 are wanted, not 2")
     form.add_rows("without a place")
     raises(Error, form.set_element_weights, 0, None, 1.0)
     form = Form(V, F)
@@ -465,7 +465,7 @@ def test_callbacks():
     group = system.add_group("sine", refresh=refresh)
     system.add_row(group, [(0, -1, 1.0)])
     raises(LookupError, system.solve, 20, says="second")
-    check(seen[:2] == [0, 1] or seen[0] == 1, "refreshed in", seen)
+    check(seen == [0, 1], "refreshed in", seen)
     raises(ValueError, system.set_row, group, 0, [1.0, 2.0], 0.0)
 
 
@@ -583,7 +583,7 @@ def test_all_builders():
         check(number >= 0 and form.system.group_count > before and info.name, name, number, info.name)
         known = {"fixed": "fixed vertices", "gauss_fairness": "Gauss image fairness", "rows": "own"}
         check(info.name == known.get(name, name.replace("_", " ")), name, "adds", info.name)
-        check(number == 0 or info.rows > 0 or name == "rows", name, "has", info.rows, "rows")
+        check((info.rows > 0) == (name != "rows"), name, "has", info.rows, "rows")
     form = Form(V, F)
     check([form.group_info(form.add_fixed(list_of)).rows for list_of in (None, [], [5, 6])] == [243, 0, 6],
           "lists: all, none, two")
@@ -802,8 +802,6 @@ def test_building():
     check(run("-c", use, GUIDEDPROJ_LIBRARY=path, **empty).returncode == 0, "a compiled library is taken")
     done = run("-c", use, GUIDEDPROJ_LIBRARY="nothing.so")
     check("'nothing.so' is no library of guidedproj.h" in done.stderr, done.stderr)
-    done = run("-c", use + ".V; guidedproj.VERSION = '9.9'", GUIDEDPROJ_LIBRARY=path)
-    check(done.returncode == 0, done.stderr)
     done = run("-c", use.replace("; guidedproj.Mesh", "; guidedproj.VERSION = '9.9'; guidedproj.Mesh"))
     check("this is the binding of version 9.9" in done.stderr, done.stderr)
 

@@ -975,7 +975,6 @@ GPROJT_TEST(forces_are_kept_and_set) {
     free(w), free(again), free(kept), free(solved);
 }
 
-/* Of two parts without supports the verdict names the first, by the first vertex. */
 /* The variables of forces, for rows of the caller's: with the form's units they are the densities; pinned edges have none. */
 GPROJT_TEST(forces_are_variables) {
     gproj_mesh *mesh = gprojt_vault(QUADS, 4, 10, 3);
@@ -1007,6 +1006,7 @@ GPROJT_TEST(forces_are_variables) {
     free(w);
 }
 
+/* Of two parts without supports the verdict names the first, by the first vertex. */
 GPROJT_TEST(parts_without_support_are_named) {
     gprojt_soup soup;
     gproj_mesh *mesh;

@@ -544,7 +544,10 @@ def _beside(values, elements, what):
     """Numbers beside a list, an entry for each: broadcast from one; None stays."""
     if values is None:
         return None
-    return np.ascontiguousarray(np.broadcast_to(np.asarray(values, np.float64), (elements,)))
+    array = np.asarray(values, np.float64)
+    if array.shape not in ((), (1,), (elements,)):
+        raise ValueError(f"{what}: one number or {elements} are wanted, not {' x '.join(map(str, array.shape))}")
+    return np.ascontiguousarray(np.broadcast_to(array, (elements,)))
 
 
 def _path(path):
@@ -669,6 +672,26 @@ class _Object:
         array = np.frombuffer(memory, dtype)
         array.flags.writeable = writeable
         return array
+
+
+class _Sticky(_Object):
+    """An object that keeps its first error, which the function `_error` of the library gives."""
+    _error = None
+
+    def _check(self, number):
+        """Raises the object's error if it has one: refusals return -1 or a code."""
+        error = _Error.from_address(getattr(_lib(), self._error)(self._c))
+        if error.code.value != Code.OK:
+            raise _failure(error)
+        return number
+
+    def _verdict(self, result):
+        """The result of a solve, unless an error ended it."""
+        result = _read(result)
+        if result.outcome == Outcome.FAILED:
+            self._check(None)
+            raise Error(result.message, Code.ERROR_STATE)
+        return result
 
 
 class Host:
@@ -1120,9 +1143,9 @@ def _solve_options(callback, options):
     return _SolveOptions(on_iteration=ctypes.cast(on_iteration, c_void_p), **options), on_iteration
 
 
-class System(_Object):
+class System(_Sticky):
     """Quadratic equations and guided projection without meshes, see >>api-system; form.system is that of a form."""
-    _destroy = "gproj_system_destroy"
+    _destroy, _error = "gproj_system_destroy", "gproj_system_error"
 
     def __init__(self, host=None):
         host = host or _default_host()
@@ -1135,13 +1158,6 @@ class System(_Object):
         system = cls._of(_Handle(pointer, None, [root]))
         system._root = root
         return system
-
-    def _check(self, number):
-        """Raises after a refusal, which is -1 for numbers and the error's code for codes."""
-        error = _Error.from_address(_lib().gproj_system_error(self._c))
-        if error.code.value != Code.OK:
-            raise _failure(error)
-        return number
 
     @property
     def memory(self):
@@ -1223,11 +1239,8 @@ class System(_Object):
         """Takes at most `iterations` steps (gproj_system_solve); options and callback as in form.solve."""
         options, callback = _solve_options(callback, options)
         with _interruptible():
-            result = _read(_lib().gproj_system_solve(self._c, iterations, byref(options)))
-        if result.outcome == Outcome.FAILED:
-            self._check(None)
-            raise Error(result.message, Code.ERROR_STATE)
-        return result
+            result = _lib().gproj_system_solve(self._c, iterations, byref(options))
+        return self._verdict(result)
 
 
 def least_squares(A, b, lower=None, upper=None, damping=0.0, start=None, host=None):
@@ -1259,24 +1272,17 @@ def least_squares(A, b, lower=None, upper=None, damping=0.0, start=None, host=No
 # ---- forms -------------------------------------------------------------------------------------------------------
 
 
-class Form(_Object):
+class Form(_Sticky):
     """A mesh, what must hold and what is wished, see >>api-form: Form(V, F), or Form(mesh).
 
     Every add_... returns the number of its group. Weights: 1 for what must hold, 0.01 to 0.3 for wishes."""
-    _destroy = "gproj_form_destroy"
+    _destroy, _error = "gproj_form_destroy", "gproj_form_error"
 
     def __init__(self, V, F=None, host=None):
         mesh, host = V if isinstance(V, Mesh) else Mesh(V, F, host), host or _default_host()
         self._handle = Form._own(_lib().gproj_form_create(mesh._c, byref(host._c)), needs=[mesh._c], keep=[host])
         self._mesh, self._targets = Mesh._of(mesh._c), {}  # the caller may close `mesh`
         self._check(None)
-
-    def _check(self, number):
-        """Raises the form's error, if it has one."""
-        error = _Error.from_address(_lib().gproj_form_error(self._c))
-        if error.code.value != Code.OK:
-            raise _failure(error)
-        return number
 
     def _add(self, name, *arguments):
         number = getattr(_lib(), "gproj_add_" + name)(self._c, *arguments)
@@ -1508,10 +1514,14 @@ class Form(_Object):
 
     # -- groups --
 
+    def _elements(self, group):
+        """The number of vertices, edges or faces, by the group's place; 0 elsewhere."""
+        place, mesh = self.group_info(group).place, self.mesh
+        return {Place.VERTEX: mesh.vertex_count, Place.EDGE: mesh.edge_count, Place.FACE: mesh.face_count}.get(place, 0)
+
     def residuals(self, group):
         """What each element of the group's place lacks after a solve, in mean edge lengths (gproj_form_residuals)."""
-        count = {Place.VERTEX: self.mesh.vertex_count, Place.EDGE: self.mesh.edge_count, Place.FACE: self.mesh.face_count}
-        lacks = np.zeros(count.get(self.group_info(group).place, 0))
+        lacks = np.zeros(self._elements(group))
         self._get("gproj_form_residuals", group, lacks.ctypes)
         return lacks
 
@@ -1522,10 +1532,7 @@ class Form(_Object):
     def set_element_weights(self, group, elements, weights):
         """Sets weights for parts of a group, times the group's (gproj_set_element_weights)."""
         count, list_of = _list(elements, "elements")
-        weights = np.ascontiguousarray(weights, np.float64)
-        place = self.group_info(group).place
-        every = {Place.VERTEX: self.mesh.vertex_count, Place.EDGE: self.mesh.edge_count, Place.FACE: self.mesh.face_count}
-        weights = _beside(weights, every.get(place, 0) if elements is None else count, "weights")
+        weights = _beside(np.asarray(weights, np.float64), self._elements(group) if elements is None else count, "weights")
         self._check(_lib().gproj_set_element_weights(self._c, group, count, list_of, weights.ctypes))
 
     def group_info(self, group):
@@ -1537,14 +1544,6 @@ class Form(_Object):
         return _lib().gproj_form_is_corner(self._c, vertex)
 
     # -- solving --
-
-    def _verdict(self, result):
-        """The result, unless an error ended it."""
-        result = _read(result)
-        if result.outcome == Outcome.FAILED:
-            self._check(None)
-            raise Error(result.message, Code.ERROR_STATE)
-        return result
 
     def solve(self, iterations=None, callback=None, **options):
         """Solves (gproj_solve) and returns a record of gproj_result; the positions are then in form.V.

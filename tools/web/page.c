@@ -145,7 +145,7 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
         }
         page.centre[k] = (low[k] + high[k]) / 2;
     }
-    page.radius = sqrt(pow(high[0] - low[0], 2) + pow(high[1] - low[1], 2) + pow(high[2] - low[2], 2)) / 2;
+    page.radius = distance(high, low) / 2;
     if (!(page.radius > 0)) page.radius = 1;
     page.opened.volume = gproj_volume(mesh);
     page.opened.edge = gproj_mesh_mean_edge_length(mesh);
@@ -614,11 +614,8 @@ static double lead(const double along[3], double way) {
         return -1;
     }
     memcpy(page.handle, to, sizeof to);
-    for (int32_t v = 0; v < mesh->vertex_count; ++v) {
-        double d[3];
-        for (int k = 0; k < 3; ++k) d[k] = mesh->position[3 * v + k] - page.before[3 * v + k];
-        most = fmax(most, sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
-    }
+    for (int32_t v = 0; v < mesh->vertex_count; ++v)
+        most = fmax(most, distance(mesh->position + 3 * v, page.before + 3 * v));
     return most;
 }
 
