@@ -74,6 +74,11 @@ holds 'a pinned vertex has no moment' 'r["vertices"][42]["mx"] == 0 and r["verti
 run 'corners' vault.obj --fixed corners --skip-buckling
 grep -q ' 4 supports' out.txt && pass || fail 'a square has four corners'
 
+printf 'kind,i\nedge,0,1,1\nload,0,0,0,-1\n' >flat.csv # no beam between supports has an axial force
+run 'no axial forces' square.obj --fixed 0-3 --forces flat.csv
+holds 'no correlation' 'r["form"]["correlation"] is None'
+grep -q '^form .*no correlation$' out.txt && pass || fail 'the summary tells a correlation of nothing'
+
 # Refusals name the place.
 printf '24,1,2\n' >short.csv
 printf '# nothing\n99,0,0,1\n' >far.csv

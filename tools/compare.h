@@ -253,37 +253,50 @@ static void compare_matrix_free(compare_matrix *matrix) {
 
 /* ---- all vertices towards given shapes of the faces, by a constant matrix ---- */
 
-/* Factors I + penalty sum C'C for the coordinates x, y and z alike; C takes the mean from the corners of a face. */
-static compare_matrix compare_shape_matrix(const compare_problem *problem) {
-    compare_matrix matrix = compare_matrix_of(problem->mesh->vertex_count);
+typedef struct compare_shapes {
+    compare_matrix matrix; /* I + penalty sum C'C for x, y and z alike; C takes the mean from the corners of a face */
+    double *target;        /* 3 numbers with mean 0 for each corner of each face */
+    double *side, *q;      /* work space: 3 * vertex_count, and 3 for each corner of a face */
+} compare_shapes;
+
+static compare_shapes compare_shapes_of(const compare_problem *problem) {
     const compare_faces *faces = &problem->faces;
+    compare_shapes shapes;
     int32_t i, j, k;
-    for (i = 0; i < matrix.n; ++i) compare_add(&matrix, i, i, 1);
+    shapes.matrix = compare_matrix_of(problem->mesh->vertex_count);
+    shapes.target = compare_take(3 * (size_t)faces->start[faces->count], sizeof *shapes.target);
+    shapes.side = compare_take(3 * (size_t)problem->mesh->vertex_count, sizeof *shapes.side);
+    shapes.q = compare_take(3 * (size_t)faces->most, sizeof *shapes.q);
+    for (i = 0; i < shapes.matrix.n; ++i) compare_add(&shapes.matrix, i, i, 1);
     for (k = 0; k < faces->count; ++k)
         for (i = faces->start[k]; i < faces->start[k + 1]; ++i)
             for (j = faces->start[k]; j <= i; ++j)
-                compare_add(&matrix, faces->vertex[i], faces->vertex[j],
+                compare_add(&shapes.matrix, faces->vertex[i], faces->vertex[j],
                             problem->penalty * ((i == j) - 1.0 / (faces->start[k + 1] - faces->start[k])));
-    compare_factor(&matrix);
-    return matrix;
+    compare_factor(&shapes.matrix);
+    return shapes;
 }
 
-/* Moves the vertices to the minimum of sum |v - p|^2 + penalty sum |C v - target|^2. `target` has 3 numbers with mean 0
-   for each corner of each face, `side` is work space of 3 * vertex_count, `q` of 3 numbers for each corner of a face.
-   Steps from the present v, so that rounding is relative to the step. */
-static void compare_reach(compare_problem *problem, compare_matrix *matrix, const double *target, double *side,
-                          double *q) {
+/* Moves the vertices to the minimum of sum |v - p|^2 + penalty sum |C v - target|^2. Steps from the present v, so that
+   rounding is relative to the step. */
+static void compare_reach(compare_problem *problem, compare_shapes *shapes) {
     const compare_faces *faces = &problem->faces;
-    int32_t n = matrix->n, i, k;
-    double *v = problem->mesh->position;
+    int32_t n = shapes->matrix.n, i, k;
+    double *v = problem->mesh->position, *side = shapes->side;
     for (i = 0; i < 3 * n; ++i) side[i % 3 * n + i / 3] = problem->original[i] - v[i];
     for (k = 0; k < faces->count; ++k) {
-        int32_t first = faces->start[k], count = compare_corners(problem, k, q);
+        int32_t first = faces->start[k], count = compare_corners(problem, k, shapes->q);
         for (i = 0; i < 3 * count; ++i)
-            side[i % 3 * n + faces->vertex[first + i / 3]] += problem->penalty * (target[3 * first + i] - q[i]);
+            side[i % 3 * n + faces->vertex[first + i / 3]] +=
+                problem->penalty * (shapes->target[3 * first + i] - shapes->q[i]);
     }
-    gproj_cholesky_solve(matrix->cholesky, 3, side, side);
+    gproj_cholesky_solve(shapes->matrix.cholesky, 3, side, side);
     for (i = 0; i < 3 * n; ++i) v[i] += side[i % 3 * n + i / 3];
+}
+
+static void compare_shapes_free(compare_shapes *shapes) {
+    compare_matrix_free(&shapes->matrix);
+    free(shapes->target), free(shapes->side), free(shapes->q);
 }
 
 #endif

@@ -12,18 +12,16 @@
 #include "compare.h"
 
 typedef struct compare_admm_state {
-    compare_matrix matrix;
-    double *t, *u, *target, *side, *q; /* target: t - u */
+    compare_shapes shapes; /* with the targets t - u */
+    double *t, *u;
 } compare_admm_state;
 
 static void *compare_admm_begin(compare_problem *problem) {
     compare_admm_state *state = compare_take(1, sizeof *state);
     size_t corners = (size_t)problem->faces.start[problem->faces.count];
-    state->matrix = compare_shape_matrix(problem);
-    state->t = compare_take(9 * corners, sizeof *state->t);
-    state->u = state->t + 3 * corners, state->target = state->t + 6 * corners;
-    state->side = compare_take(3 * (size_t)problem->mesh->vertex_count, sizeof *state->side);
-    state->q = compare_take(3 * (size_t)problem->faces.most, sizeof *state->q);
+    state->shapes = compare_shapes_of(problem);
+    state->t = compare_take(6 * corners, sizeof *state->t);
+    state->u = state->t + 3 * corners;
     return state;
 }
 
@@ -35,20 +33,20 @@ static bool compare_admm_step(compare_problem *problem, void *user) {
         int32_t first = 3 * faces->start[k], count = compare_corners(problem, k, state->t + first);
         for (i = first; i < first + 3 * count; ++i) state->t[i] += state->u[i];
         compare_project(count, state->t + first, problem->circular);
-        for (i = first; i < first + 3 * count; ++i) state->target[i] = state->t[i] - state->u[i];
+        for (i = first; i < first + 3 * count; ++i) state->shapes.target[i] = state->t[i] - state->u[i];
     }
-    compare_reach(problem, &state->matrix, state->target, state->side, state->q);
+    compare_reach(problem, &state->shapes);
     for (k = 0; k < faces->count; ++k) {
-        int32_t first = 3 * faces->start[k], count = compare_corners(problem, k, state->q);
-        for (i = 0; i < 3 * count; ++i) state->u[first + i] += state->q[i] - state->t[first + i];
+        int32_t first = 3 * faces->start[k], count = compare_corners(problem, k, state->shapes.q);
+        for (i = 0; i < 3 * count; ++i) state->u[first + i] += state->shapes.q[i] - state->t[first + i];
     }
     return true;
 }
 
 static void compare_admm_end(void *user) {
     compare_admm_state *state = user;
-    compare_matrix_free(&state->matrix);
-    free(state->t), free(state->side), free(state->q), free(state);
+    compare_shapes_free(&state->shapes);
+    free(state->t), free(state);
 }
 
 static const compare_method compare_admm = {"ADMM",

@@ -11,28 +11,20 @@
 
 #include "compare.h"
 
-typedef struct compare_shapeup_state {
-    compare_matrix matrix;
-    double *target, *side, *q;
-} compare_shapeup_state;
-
 static void *compare_shapeup_begin(compare_problem *problem) {
-    compare_shapeup_state *state = compare_take(1, sizeof *state);
-    state->matrix = compare_shape_matrix(problem);
-    state->target = compare_take(3 * (size_t)problem->faces.start[problem->faces.count], sizeof *state->target);
-    state->side = compare_take(3 * (size_t)problem->mesh->vertex_count, sizeof *state->side);
-    state->q = compare_take(3 * (size_t)problem->faces.most, sizeof *state->q);
-    return state;
+    compare_shapes *shapes = compare_take(1, sizeof *shapes);
+    *shapes = compare_shapes_of(problem);
+    return shapes;
 }
 
 static bool compare_shapeup_step(compare_problem *problem, void *user) {
-    compare_shapeup_state *state = user;
+    compare_shapes *shapes = user;
     int32_t k;
     for (k = 0; k < problem->faces.count; ++k) {
-        double *target = state->target + 3 * problem->faces.start[k];
+        double *target = shapes->target + 3 * problem->faces.start[k];
         compare_project(compare_corners(problem, k, target), target, problem->circular);
     }
-    compare_reach(problem, &state->matrix, state->target, state->side, state->q);
+    compare_reach(problem, shapes);
     return true;
 }
 
@@ -54,9 +46,8 @@ static double compare_shapeup_energy(const compare_problem *problem) {
 }
 
 static void compare_shapeup_end(void *user) {
-    compare_shapeup_state *state = user;
-    compare_matrix_free(&state->matrix);
-    free(state->target), free(state->side), free(state->q), free(state);
+    compare_shapes_free(user);
+    free(user);
 }
 
 static const compare_method compare_shapeup = {"Shape-Up",

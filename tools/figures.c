@@ -20,6 +20,7 @@
 
 #include <sys/stat.h>
 
+#include "json.h"
 #include "figures_mesh.h"
 #include "figures_run.h"
 #include "figures_picture.h"
@@ -62,16 +63,23 @@ static void print_table(const studio *s) {
 }
 
 static void print_json(const studio *s) {
+    gprojx_json json = {stdout, 0, false, false}, *j = &json;
     int i;
-    puts("[");
+    gprojx_json_open(j, NULL, '[');
     for (i = 0; i < s->count; ++i) {
         const record *r = &s->record[i];
-        printf("  {\"figure\": \"%s\", \"vertices\": %ld, \"faces\": %ld, \"variables\": %ld, \"equations\": %ld, "
-               "\"iterations\": %ld, \"seconds\": %.4f, \"worst\": %.3e, \"exact\": %s, \"spoiled\": %ld}%s\n",
-               r->name, (long)r->vertices, (long)r->faces, (long)r->variables, (long)r->equations, (long)r->iterations,
-               r->seconds, r->worst, r->exact ? "true" : "false", (long)r->spoiled, i + 1 < s->count ? "," : "");
+        gprojx_json_open_row(j, NULL);
+        gprojx_json_string(j, "figure", r->name);
+        gprojx_json_integer(j, "vertices", r->vertices), gprojx_json_integer(j, "faces", r->faces);
+        gprojx_json_integer(j, "variables", r->variables), gprojx_json_integer(j, "equations", r->equations);
+        gprojx_json_integer(j, "iterations", r->iterations);
+        gprojx_json_number(j, "seconds", r->seconds), gprojx_json_number(j, "worst", r->worst);
+        gprojx_json_next(j, "exact"), fputs(r->exact ? "true" : "false", stdout);
+        gprojx_json_integer(j, "spoiled", r->spoiled);
+        gprojx_json_close(j, '}');
     }
-    puts("]");
+    gprojx_json_close(j, ']');
+    puts("");
 }
 
 static int usage(FILE *file) {

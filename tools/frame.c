@@ -480,6 +480,12 @@ static bool is_held(const tool *t, int32_t vertex) {
     return held[0] && held[1] && held[2];
 }
 
+/* Tells whether the vertex is held against any motion. */
+static bool is_support(const tool *t, int32_t vertex) {
+    static const bool free_motions[6];
+    return memcmp(t->frame.held + 6 * (size_t)vertex, free_motions, sizeof free_motions) != 0;
+}
+
 /* Sums the sizes of all loads: of the beams, and at vertices. */
 static double sum_of_loads(const tool *t) {
     double sum = 0;
@@ -649,11 +655,9 @@ static void report_lists(tool *t, gprojx_json *j) {
     gprojx_json_close(j, ']');
     gprojx_json_open(j, "vertices", '[');
     for (v = 0; v < t->mesh->vertex_count; ++v) {
-        bool held = false;
-        for (k = 0; k < 6; ++k) held |= t->frame.held[6 * (size_t)v + (size_t)k];
         gprojx_json_open_row(j, NULL);
         for (k = 0; k < 6; ++k) gprojx_json_number(j, keys[k], t->frame.motion[6 * (size_t)v + (size_t)k]);
-        for (k = 6; k < 12 && held; ++k)
+        for (k = 6; k < 12 && is_support(t, v); ++k)
             gprojx_json_number(j, keys[k], t->frame.reaction[6 * (size_t)v + (size_t)k - 6]);
         gprojx_json_close(j, '}');
     }
@@ -750,16 +754,25 @@ static void print_buckling(const tool *t) {
             b->factor[0], b->residual[0], b->factor[1], b->factor[2]);
 }
 
+static void print_comparison(const tool *t) {
+    const tool_comparison *c = &t->comparison;
+    char unit[32];
+    if (!isfinite(c->correlation))
+        puts("form          axial forces here or in the form are the same in all edges: no correlation");
+    else
+        printf(
+            "form          axial forces correlate by %.4f with those of the form; the largest difference is %.3g %% of "
+            "the largest, between vertices %ld and %ld (1 is %s)\n",
+            c->correlation, 100 * c->difference, (long)t->mesh->origin[2 * c->worst],
+            (long)t->mesh->origin[2 * c->worst + 1], amount(c->unit, "N", unit));
+}
+
 static void print_summary(const tool *t) {
     const tool_extremes *x = &t->extremes;
-    const tool_comparison *c = &t->comparison;
-    int32_t supports = 0, v, k, bad;
+    int32_t supports = 0, v, k;
     char a[32], b[32];
     double sum = 0, difference = 0;
-    for (v = 0; v < t->mesh->vertex_count; ++v) {
-        for (bad = 0, k = 0; k < 6; ++k) bad |= t->frame.held[6 * (size_t)v + (size_t)k];
-        supports += bad;
-    }
+    for (v = 0; v < t->mesh->vertex_count; ++v) supports += is_support(t, v);
     for (k = 0; k < 3; ++k) {
         double load = x->load[k] - (k == 2 ? x->weight : 0);
         sum += load * load, difference += pow(load + x->reaction[k], 2);
@@ -783,12 +796,7 @@ static void print_summary(const tool *t) {
     printf("Euler loads   at most %.3g %% of an edge's own is reached, between vertices %ld and %ld\n",
            100 * t->edge[x->near_euler].euler_share, (long)t->mesh->origin[2 * x->near_euler],
            (long)t->mesh->origin[2 * x->near_euler + 1]);
-    if (t->forces)
-        printf(
-            "form          axial forces correlate by %.4f with those of the form; the largest difference is %.3g %% of "
-            "the largest, between vertices %ld and %ld (1 is %s)\n",
-            c->correlation, 100 * c->difference, (long)t->mesh->origin[2 * c->worst],
-            (long)t->mesh->origin[2 * c->worst + 1], amount(c->unit, "N", a));
+    if (t->forces) print_comparison(t);
     print_buckling(t);
 }
 

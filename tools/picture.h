@@ -82,7 +82,7 @@ typedef struct gprojx_painter {
     bool *crossed;        /* of each face: it crosses itself (a bow-tie) */
     bool *folded;         /* of each edge */
     bool *collapsed;      /* of each edge */
-    bool *half_painted;   /* of each edge: it waits for the second of its two faces */
+    bool *met;            /* of each edge: one of its faces is painted */
     int32_t turned_count, crossed_count, folded_count, collapsed_count;
     gprojx_list point, item, link, arc, heap, ahead;
     int32_t *cell, columns, lines; /* grid: first link of each cell, or -1 */
@@ -759,8 +759,8 @@ static bool gprojx_find_marks(gprojx_painter *p) {
     p->crossed = (bool *)calloc((size_t)mesh->face_count + 1, sizeof *p->crossed);
     p->folded = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->folded);
     p->collapsed = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->collapsed);
-    p->half_painted = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->half_painted);
-    if (!p->turned || !p->crossed || !p->folded || !p->collapsed || !p->half_painted) return false;
+    p->met = (bool *)calloc((size_t)mesh->edge_count + 1, sizeof *p->met);
+    if (!p->turned || !p->crossed || !p->folded || !p->collapsed || !p->met) return false;
     for (i = 0; i < mesh->face_count; ++i) {
         p->crossed[i] = gprojx_is_crossed(mesh, i);
         p->crossed_count += p->crossed[i];
@@ -903,11 +903,11 @@ static bool gprojx_is_idle(const gprojx_painter *p, int32_t edge) {
     return outer && fabs(p->options->edge_value[edge]) <= 1e-9 * p->edge_most;
 }
 
-/* An edge between two whole faces is painted with the second of them, over both. */
+/* An edge of two faces waits for the second of them, to be painted over both. Pieces of faces that are cut do not wait. */
 static bool gprojx_waits(const gprojx_painter *p, const gprojx_item *item, int32_t edge) {
-    if (item->cuts > 0 || p->mesh->face[2 * edge] < 0 || p->mesh->face[2 * edge + 1] < 0) return false;
-    p->half_painted[edge] = !p->half_painted[edge];
-    return p->half_painted[edge];
+    bool second = p->met[edge];
+    p->met[edge] = true;
+    return !second && item->cuts == 0 && p->mesh->face[2 * edge] >= 0 && p->mesh->face[2 * edge + 1] >= 0;
 }
 
 /* Edges that stand out are lines of their own, above the face. */
@@ -1315,8 +1315,7 @@ static gproj_code gprojx_picture(FILE *file, const gproj_mesh *mesh, const gproj
     painter.file = file;
     code = gprojx_draw(&painter);
     free(painter.vertex), free(painter.cell);
-    free(painter.turned), free(painter.crossed), free(painter.folded), free(painter.collapsed),
-        free(painter.half_painted);
+    free(painter.turned), free(painter.crossed), free(painter.folded), free(painter.collapsed), free(painter.met);
     free(painter.point.data), free(painter.item.data), free(painter.link.data), free(painter.arc.data);
     free(painter.heap.data), free(painter.ahead.data);
     return code;
