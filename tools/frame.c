@@ -209,8 +209,10 @@ static const tool_option options[] = {
      set_pieces, offsetof(tool, pieces)},
     {"forces", "FILE", "compare with these: the CSV of guidedproj --forces", set_text, offsetof(tool, forces)},
     {"skip-buckling", "", "leave out the load factor", set_flag, offsetof(tool, skip_buckling)},
-    {"report", "FILE.json", "everything, for each beam and vertex", set_text, offsetof(tool, output[OUTPUT_REPORT].path)},
-    {"picture", "FILE.svg", "faces by utilisation, edges by axial force", set_text, offsetof(tool, output[OUTPUT_PICTURE].path)},
+    {"report", "FILE.json", "everything, for each beam and vertex", set_text,
+     offsetof(tool, output[OUTPUT_REPORT].path)},
+    {"picture", "FILE.svg", "faces by utilisation, edges by axial force", set_text,
+     offsetof(tool, output[OUTPUT_PICTURE].path)},
     {"quiet", "", "print errors only", set_flag, offsetof(tool, quiet)},
     {"help", "", "print this", set_flag, offsetof(tool, help)},
 };
@@ -729,7 +731,7 @@ static bool prepare_outputs(tool *t) {
 
 /* All outputs are complete on the disk before the first is put in its place. */
 static bool write_outputs(tool *t) {
-    static gproj_code (*const write[OUTPUT_COUNT])(tool *t, FILE *file) = {draw, write_report};
+    static gproj_code (*const write[OUTPUT_COUNT])(tool * t, FILE * file) = {draw, write_report};
     gproj_error error;
     int i;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
