@@ -11,7 +11,7 @@ compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library tha
     shift 2
     [ -n "$library" ] || set -- -O1
     ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$@" ${library:+-DGPROJI_IMPLEMENTED} "$root/tools/frame.c" $library \
-        -o "$work/$name" -lm || { fail "tools/frame.c does not compile ($*)"; report; }
+        -o "$work/$name" -lm -lpthread || { fail "tools/frame.c does not compile ($*)"; report; }
 }
 compile frame build/library.san.a -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
 compile fast build/library.a -O2
@@ -108,6 +108,16 @@ refuses 3 'is a mechanism: vertex ' vault.obj --roller boundary
 refuses 3 'is a mechanism: vertex ' square.obj --pinned 0
 refuses 3 'wrong units?' vault.obj --gravity 1e200
 refuses 3 'cannot be written' vault.obj --report nowhere/r.json
+
+# An output that cannot be written leaves the other one as it was, and nothing beside it.
+ln -s /dev/full full.json
+mkdir folder.json folder.svg
+for outputs in 'old.svg full.json' 'old.svg folder.json' 'folder.svg old.json'; do
+    echo old | tee old.svg >old.json
+    refuses 3 "the output '" vault.obj --skip-buckling --picture ${outputs% *} --report ${outputs#* }
+    [ "$(cat old.svg old.json)" = "$(printf 'old\nold')" ] && ! ls gproj-*.tmp >ls.txt 2>&1 && pass ||
+        fail "a failing output of '$outputs' changed the other, or left a file"
+done
 strange=$(printf 'a\nb\033[31m.obj') # names are printed on one line, without what terminals obey
 refuses 3 'a?b?[31m.obj' "$strange"
 cp vault.obj "$strange"

@@ -1,10 +1,12 @@
 /* frame.c - how would the edges of a mesh carry loads as beams with rigid joints? Linear statics and buckling.
 
-       cc -O2 -o frame frame.c -lm
+       cc -O2 -o frame frame.c -lm -lpthread
        ./frame vault.obj --section tube:0.1,0.005 --forces forces.csv --picture vault.svg
 
    From top to bottom: the run and its errors; the options; supports, loads and forces of the form; the analysis; the
    picture and the report; the summary; main. frame.h and frame_buckling.h have the mechanics. */
+#define _XOPEN_SOURCE 700
+
 #ifndef GPROJI_IMPLEMENTED /* else the library is linked: tests compile it once */
 #define GPROJ_STATIC
 #define GUIDEDPROJ_IMPLEMENTATION
@@ -13,6 +15,7 @@
 
 #include "frame_buckling.h"
 #include "json.h"
+#include "outputs.h"
 #include "picture.h"
 #include "readers.h"
 
@@ -27,6 +30,11 @@ enum {
     MOST_SUPPORTS = 64, /* options, not vertices */
     MOST_PIECES = 16,
     MEGABYTES = 1024
+};
+enum {
+    OUTPUT_PICTURE,
+    OUTPUT_REPORT,
+    OUTPUT_COUNT
 };
 
 typedef struct tool_support { /* an option --pinned, --fixed or --roller */
@@ -59,7 +67,8 @@ typedef struct tool_extremes {
 } tool_extremes;
 
 typedef struct tool {
-    const char *input, *loads, *forces, *report, *picture;
+    const char *input, *loads, *forces;
+    gprojx_output output[OUTPUT_COUNT];
     const char *section_text;
     gprojx_section section;
     gprojx_material material;
@@ -200,8 +209,10 @@ static const tool_option options[] = {
      set_pieces, offsetof(tool, pieces)},
     {"forces", "FILE", "compare with these: the CSV of guidedproj --forces", set_text, offsetof(tool, forces)},
     {"skip-buckling", "", "leave out the load factor", set_flag, offsetof(tool, skip_buckling)},
-    {"report", "FILE.json", "everything, for each beam and vertex", set_text, offsetof(tool, report)},
-    {"picture", "FILE.svg", "faces by utilisation, edges by axial force", set_text, offsetof(tool, picture)},
+    {"report", "FILE.json", "everything, for each beam and vertex", set_text,
+     offsetof(tool, output[OUTPUT_REPORT].path)},
+    {"picture", "FILE.svg", "faces by utilisation, edges by axial force", set_text,
+     offsetof(tool, output[OUTPUT_PICTURE].path)},
     {"quiet", "", "print errors only", set_flag, offsetof(tool, quiet)},
     {"help", "", "print this", set_flag, offsetof(tool, help)},
 };
@@ -261,10 +272,10 @@ static bool read_command_line(tool *t, int argc, char **argv) {
     }
     if (t->help) return true;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: frame MESH.obj");
-    if (t->report && !gprojx_has_ending(t->report, ".json"))
-        return fail(t, EXIT_USAGE, "the report '%s' must end in .json", t->report);
-    if (t->picture && !gprojx_has_ending(t->picture, ".svg"))
-        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->picture);
+    if (t->output[OUTPUT_REPORT].path && !gprojx_has_ending(t->output[OUTPUT_REPORT].path, ".json"))
+        return fail(t, EXIT_USAGE, "the report '%s' must end in .json", t->output[OUTPUT_REPORT].path);
+    if (t->output[OUTPUT_PICTURE].path && !gprojx_has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
+        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
     return true;
 }
 
@@ -708,14 +719,32 @@ static gproj_code write_report(tool *t, FILE *file) {
     return GPROJ_OK;
 }
 
-static bool write_file(tool *t, const char *path, gproj_code (*write)(tool *t, FILE *file)) {
-    FILE *file = path ? fopen(path, "w") : NULL;
-    bool good;
-    if (!path) return true;
-    if (!file) return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", path, strerror(errno));
-    good = write(t, file) == GPROJ_OK && !ferror(file);
-    good = fclose(file) == 0 && good;
-    return good || fail(t, EXIT_REFUSED, "the output '%s' cannot be written", path);
+static bool fail_output(tool *t, const gprojx_output *output, const gproj_error *error) {
+    return fail(t, error->code == GPROJ_ERROR_MEMORY ? EXIT_MEMORY : EXIT_REFUSED, "the output '%s' %s", output->path,
+                error->message);
+}
+
+static bool prepare_outputs(tool *t) {
+    gproj_error error;
+    int i;
+    for (i = 0; i < OUTPUT_COUNT; ++i)
+        if (t->output[i].path && !gprojx_output_prepare(&t->output[i], &error))
+            return fail_output(t, &t->output[i], &error);
+    return true;
+}
+
+/* All outputs are complete on the disk before the first is put in its place. */
+static bool write_outputs(tool *t) {
+    static gproj_code (*const write[OUTPUT_COUNT])(tool * t, FILE * file) = {draw, write_report};
+    gproj_error error;
+    int i;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        gprojx_output *output = &t->output[i];
+        FILE *file = output->path ? gprojx_output_open(output, &error) : NULL;
+        if (output->path && !(file && gprojx_output_close(output, file, write[i](t, file), &error)))
+            return fail_output(t, output, &error);
+    }
+    return gprojx_outputs_place(t->output, OUTPUT_COUNT, &error) || fail_output(t, &t->output[error.index], &error);
 }
 
 /* ---- the summary ---- */
@@ -808,15 +837,16 @@ int main(int argc, char **argv) {
     t.section = gprojx_section_box(0.1, 0.1, 0.005), t.section_text = "box:0.1,0.1,0.005";
     t.material.young = 210e9, t.material.shear = 81e9, t.material.density = 7850, t.material.yield = 235e6;
     t.gravity = 9.81, t.scale = 1, t.pieces = 2;
+    gprojx_watch_signals(t.output, OUTPUT_COUNT);
     if (read_command_line(&t, argc, argv)) {
         if (t.help)
             print_help();
-        else if (make_frame(&t) && analyse(&t) && write_file(&t, t.picture, draw) &&
-                 write_file(&t, t.report, write_report) && !t.quiet)
+        else if (prepare_outputs(&t) && make_frame(&t) && analyse(&t) && write_outputs(&t) && !t.quiet)
             print_summary(&t);
         if ((fflush(stdout) != 0 || ferror(stdout)) && t.exit_code == 0)
             fail(&t, EXIT_REFUSED, "standard output cannot be written");
     }
+    gprojx_outputs_discard(t.output, OUTPUT_COUNT, "frame");
     gprojx_frame_destroy(&t.frame);
     gproj_mesh_destroy(t.mesh);
     free(t.edge), free(t.axial), free(t.form_load), free(t.buckling.shape);

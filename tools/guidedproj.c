@@ -5,7 +5,7 @@
 
    From top to bottom: the run and its errors; numbers and words; readers of values; files; seams; builders of
    constraints and wishes; the table of options, which names a reader and a builder for each; the command line; the
-   problem file; the solve; outputs (mesh, report, picture); signals; main.
+   problem file; the solve; outputs (mesh, report, picture); the summary; main.
 
    A new option is a row in the table. Where no reader or builder fits, it has one of its own. */
 #define _XOPEN_SOURCE 700
@@ -18,8 +18,6 @@
 
 #include <ctype.h>
 #include <errno.h>
-#include <fcntl.h>
-#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,6 +27,7 @@
 #include <unistd.h>
 
 #include "formats.h"
+#include "outputs.h"
 #include "panels.h"
 #include "picture.h"
 #include "problem.h"
@@ -96,14 +95,6 @@ typedef struct tool_sides { /* numbers of edges */
     int32_t count, edges[MOST_SIDES];
 } tool_sides;
 
-typedef struct tool_output {
-    const char *path;
-    char *target;    /* the path without symbolic links */
-    char *temporary; /* in the target's folder; NULL before it is written, and for devices and pipes */
-    char *kept;      /* the old file's second name, until all outputs are in their places */
-    bool device;     /* exists and is no regular file: written directly */
-} tool_output;
-
 enum {
     OUTPUT_MESH,
     OUTPUT_REPORT,
@@ -122,7 +113,7 @@ enum {
 typedef struct tool {
     /* what the command line says */
     const char *input;
-    tool_output output[OUTPUT_COUNT];
+    gprojx_output output[OUTPUT_COUNT];
     const char *fill; /* a file with a curve; NULL: the mesh is the input */
     tool_sides sides;
     tool_subdivision subdivision;
@@ -217,6 +208,11 @@ static bool fail_library(tool *t, const char *path, const gproj_error *error) {
     const char *message = error->message[0] ? error->message : gproj_code_string(error->code);
     if (!path || strstr(message, path)) return fail(t, code, "%s", message);
     return fail(t, code, "%s: %s", path, message);
+}
+
+static bool fail_output(tool *t, int exit_code, const gprojx_output *output, const gproj_error *error) {
+    if (error->code == GPROJ_ERROR_MEMORY) return fail_memory(t);
+    return fail(t, exit_code, "the output '%s' %s", output->path, error->message);
 }
 
 static void *take(tool *t, size_t count, size_t size) {
@@ -330,7 +326,7 @@ static bool set_path(tool *t, void *place, const char *name, const char *value) 
 }
 
 static bool set_output(tool *t, void *place, const char *name, const char *value) {
-    return set_path(t, &((tool_output *)place)->path, name, value);
+    return set_path(t, &((gprojx_output *)place)->path, name, value);
 }
 
 static bool set_text(tool *t, void *place, const char *name, const char *value) {
@@ -342,7 +338,7 @@ static bool set_text(tool *t, void *place, const char *name, const char *value) 
 /* Reads DISTANCE,FILE. */
 static bool set_offset(tool *t, void *place, const char *name, const char *value) {
     const char *comma = strchr(value, ',');
-    ((tool_output *)place)->path = comma ? comma + 1 : NULL;
+    ((gprojx_output *)place)->path = comma ? comma + 1 : NULL;
     return (comma && comma[1] && gprojx_read_number(value, (size_t)(comma - value), &t->offset_distance) &&
             fabs(t->offset_distance) > 0) ||
            fail_value(t, name, value,
@@ -684,60 +680,8 @@ static bool set_colour(tool *t, void *place, const char *name, const char *value
 
 /* ---- files ---- */
 
-static char *join(tool *t, const char *a, const char *b, const char *c) {
-    char *path = (char *)take(t, strlen(a) + strlen(b) + strlen(c) + 1, 1);
-    if (path) strcat(strcat(strcpy(path, a), b), c);
-    return path;
-}
-
-/* Finds where an output really goes, and refuses before the work starts what could not be written after it. */
-static bool prepare_output(tool *t, tool_output *output) {
-    const char *slash = strrchr(output->path, '/');
-    struct stat info;
-    char *folder, *real;
-    bool writable;
-    folder = join(t, output->path, "", "");
-    if (!folder) return false;
-    if (slash)
-        folder[slash == output->path ? 1 : slash - output->path] = 0;
-    else
-        strcpy(folder, "."); /* a path has at least one character */
-    output->target = realpath(output->path, NULL);
-    if (output->target) { /* it exists */
-        slash = strrchr(output->target, '/');
-        free(folder);
-        folder = join(t, output->target, "", "");
-        if (!folder) return false;
-        folder[slash == output->target ? 1 : slash - output->target] = 0;
-        if (stat(output->target, &info) == 0 && S_ISDIR(info.st_mode)) {
-            free(folder);
-            return fail(t, EXIT_USAGE, "the output '%s' is a folder", output->path);
-        }
-        output->device = !S_ISREG(info.st_mode);
-    } else {
-        if (lstat(output->path, &info) == 0 && S_ISLNK(info.st_mode)) {
-            free(folder);
-            return fail(t, EXIT_USAGE, "the output '%s' is a symbolic link that leads nowhere: remove it, or mend it",
-                        output->path);
-        }
-        real = realpath(folder, NULL);
-        if (!real) {
-            fail(t, EXIT_USAGE, "the output '%s' cannot be written: there is no folder '%s'", output->path, folder);
-            free(folder);
-            return false;
-        }
-        output->target = join(t, real, strcmp(real, "/") == 0 ? "" : "/", slash ? slash + 1 : output->path);
-        free(real);
-    }
-    writable = output->device ? access(output->target, W_OK) == 0 : access(folder, W_OK | X_OK) == 0;
-    free(folder);
-    if (!output->target) return false;
-    if (!writable) return fail(t, EXIT_USAGE, "the output '%s' cannot be written: %s", output->path, strerror(errno));
-    return true;
-}
-
 /* Refuses to write over a file that this run reads. */
-static bool keep_apart(tool *t, const tool_output *output, const char *path, size_t size) {
+static bool keep_apart(tool *t, const gprojx_output *output, const char *path, size_t size) {
     char *copy = (char *)take(t, size + 1, 1), *real;
     bool same;
     if (!copy) return false;
@@ -750,7 +694,7 @@ static bool keep_apart(tool *t, const tool_output *output, const char *path, siz
     return !same;
 }
 
-static bool keep_problem_apart(tool *t, const tool_output *output) {
+static bool keep_problem_apart(tool *t, const gprojx_output *output) {
     int32_t i;
     if (t->problem_path && !keep_apart(t, output, t->problem_path, strlen(t->problem_path))) return false;
     if (t->start_forces && !keep_apart(t, output, t->start_forces, strlen(t->start_forces))) return false;
@@ -762,11 +706,12 @@ static bool keep_problem_apart(tool *t, const tool_output *output) {
 }
 
 static bool prepare_outputs(tool *t) {
+    gproj_error error;
     int32_t i, j;
     for (i = 0; i < OUTPUT_COUNT; ++i) {
-        tool_output *output = &t->output[i];
+        gprojx_output *output = &t->output[i];
         if (!output->path) continue;
-        if (!prepare_output(t, output)) return false;
+        if (!gprojx_output_prepare(output, &error)) return fail_output(t, EXIT_USAGE, output, &error);
         if (i == OUTPUT_STATE && output->device)
             return fail(t, EXIT_USAGE,
                         "--state %s is a device or a pipe: a state is written to a file and read from it",
@@ -1862,7 +1807,7 @@ static bool check_needs(tool *t) {
 }
 
 /* Refuses names that do not end like a mesh file. */
-static bool check_mesh_output(tool *t, const tool_output *output) {
+static bool check_mesh_output(tool *t, const gprojx_output *output) {
     const char *path = output->path;
     if (!path || gprojx_has_ending(path, ".obj") || gprojx_has_ending(path, ".off") || gprojx_has_ending(path, ".ply"))
         return true;
@@ -2317,7 +2262,7 @@ static bool drag(tool *t) {
 
 /* Goes on from the state in the file of --state, if there is one. */
 static bool restore(tool *t) {
-    const tool_output *state = &t->output[OUTPUT_STATE];
+    const gprojx_output *state = &t->output[OUTPUT_STATE];
     gproj_error error;
     size_t size;
     char *bytes;
@@ -2590,185 +2535,20 @@ static gproj_code write_state(tool *t, FILE *file) {
     return code;
 }
 
-/* ---- outputs in their places: all of them, or none ---- */
+/* ---- outputs in their places ---- */
 
-static tool *running; /* for the signals */
-
-/* Takes away the files that no one is to see, and lets the signal do what it would have done. */
-static void end_by_signal(int number) {
-    int32_t i;
-    for (i = 0; running && i < OUTPUT_COUNT; ++i)
-        if (running->output[i].temporary) unlink(running->output[i].temporary);
-    signal(number, SIG_DFL);
-    raise(number);
-}
-
-static const int ending_signals[] = {SIGHUP, SIGINT, SIGTERM};
-enum {
-    ENDING_SIGNALS = sizeof ending_signals / sizeof ending_signals[0]
-};
-
-static void watch_signals(tool *t) {
-    int i;
-    running = t;
-    for (i = 0; i < ENDING_SIGNALS; ++i)
-        if (signal(ending_signals[i], SIG_IGN) != SIG_IGN) signal(ending_signals[i], end_by_signal);
-}
-
-/* Holds the signals back while files and their names in the outputs differ, or lets them come. */
-static void hold_signals(bool hold) {
-    sigset_t set;
-    int i;
-    sigemptyset(&set);
-    for (i = 0; i < ENDING_SIGNALS; ++i) sigaddset(&set, ending_signals[i]);
-    pthread_sigmask(hold ? SIG_BLOCK : SIG_UNBLOCK, &set, NULL);
-}
-
-/* A name in the target's folder; `number` tells those of one process apart. */
-static char *name_beside(tool *t, const char *target, int number) {
-    char name[48], *path;
-    snprintf(name, sizeof name, "gproj-%ld-%d.tmp", (long)getpid(), number);
-    path = join(t, target, name, ""); /* room for the longer of the two */
-    if (path) strcpy(path + (strrchr(target, '/') - target) + 1, name);
-    return path;
-}
-
-enum {
-    MOST_NAMES = 1000 /* tried: crashed processes of the same number may have left some */
-};
-
-/* Makes a new file in the folder of the target, which follows no link and opens no file that is there. It has the
-   permissions of the old one. */
-static FILE *open_temporary(tool *t, tool_output *output) {
-    struct stat info;
-    bool old = stat(output->target, &info) == 0;
-    int descriptor = -1, number;
-    if (output->device) return fopen(output->target, "w");
-    hold_signals(true);
-    for (number = 0; descriptor < 0 && number < MOST_NAMES; ++number) {
-        char *name = name_beside(t, output->target, number);
-        if (!name) break;
-        descriptor = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, old ? 0600 : 0666);
-        if (descriptor >= 0)
-            output->temporary = name;
-        else {
-            free(name);
-            if (errno != EEXIST) break;
-        }
-    }
-    hold_signals(false);
-    if (descriptor < 0) return NULL;
-    if (old) {
-        /* Only root gives files away, others choose among their groups. A group that is not kept gets no rights. */
-        mode_t mode = info.st_mode & 0777;
-        if (fchown(descriptor, info.st_uid, info.st_gid) != 0 && fchown(descriptor, (uid_t)-1, info.st_gid) != 0)
-            mode &= 0707;
-        fchmod(descriptor, mode);
-        errno = 0;
-    }
-    return fdopen(descriptor, "w");
-}
-
-/* Flushes a file to the disk, or the names in a folder. */
-static bool write_through(const tool_output *output, FILE *file) {
-    return fflush(file) == 0 && !ferror(file) && (output->device || fsync(fileno(file)) == 0);
-}
-static void write_folder_through(const char *target) {
-    char *folder = strdup(target), *slash = folder ? strrchr(folder, '/') : NULL;
-    int descriptor;
-    if (slash) {
-        slash[slash == folder] = 0;
-        descriptor = open(folder, O_RDONLY | O_CLOEXEC);
-        if (descriptor >= 0) fsync(descriptor), close(descriptor); /* some file systems refuse */
-    }
-    free(folder);
-}
-
-static bool write_output(tool *t, tool_output *output, gproj_code (*write)(tool *t, FILE *file)) {
+static bool write_output(tool *t, gprojx_output *output, gproj_code (*write)(tool *t, FILE *file)) {
+    gproj_error error;
     FILE *file;
-    gproj_code code;
-    bool flushed;
-    int cause;
     if (!output->path) return true;
-    errno = 0;
-    file = open_temporary(t, output);
-    if (!file) return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
-    code = write(t, file);
-    flushed = write_through(output, file);
-    cause = errno;
-    if (fclose(file) != 0 && flushed) flushed = false, cause = errno;
-    if (code == GPROJ_ERROR_MEMORY) return fail_memory(t);
-    if (code == GPROJ_OK && flushed) return true;
-    return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path,
-                cause ? strerror(cause) : gproj_code_string(code));
-}
-
-/* Gives the old file, where there is one, a second name; where the file system has no such links, another name. */
-static bool keep_old(tool *t, tool_output *output) {
-    int number;
-    bool kept = access(output->target, F_OK) != 0;
-    for (number = 0; !kept && number < MOST_NAMES; ++number) {
-        free(output->kept);
-        output->kept = name_beside(t, output->target, number);
-        if (!output->kept) return false;
-        kept = link(output->target, output->kept) == 0;
-        if (!kept && errno != EEXIST)
-            kept = access(output->kept, F_OK) != 0 && rename(output->target, output->kept) == 0;
-    }
-    if (kept) return true;
-    free(output->kept);
-    output->kept = NULL;
-    return fail(t, EXIT_REFUSED, "the output '%s' cannot be written: the old file cannot be moved: %s", output->path,
-                strerror(errno));
-}
-
-/* Puts back what was at the places of the first `count` outputs. */
-static void put_back(tool *t, int32_t count) {
-    int32_t i;
-    for (i = 0; i < count; ++i) {
-        tool_output *output = &t->output[i];
-        if (!output->path || output->device) continue;
-        if (output->kept && rename(output->kept, output->target) != 0) {
-            fputs("guidedproj: the old file is now ", stderr);
-            gprojx_print_plain(stderr, output->kept);
-            fputc('\n', stderr);
-        } else if (output->kept)
-            unlink(output->kept); /* renaming does nothing where both are names of one file */
-        else if (!output->temporary)
-            unlink(output->target); /* there was none */
-        free(output->kept);
-        output->kept = NULL;
-    }
-}
-
-/* Renames all new files to their places; where one cannot be, the old files return. */
-static bool put_in_place(tool *t) {
-    int32_t i;
-    for (i = 0; i < OUTPUT_COUNT; ++i) {
-        tool_output *output = &t->output[i];
-        if (!output->temporary) continue;
-        if (!keep_old(t, output) || rename(output->temporary, output->target) != 0) {
-            fail(t, EXIT_REFUSED, "the output '%s' cannot be written: %s", output->path, strerror(errno));
-            put_back(t, i + 1);
-            return false;
-        }
-        free(output->temporary);
-        output->temporary = NULL;
-    }
-    for (i = 0; i < OUTPUT_COUNT; ++i) {
-        tool_output *output = &t->output[i];
-        if (!output->path || output->device) continue;
-        if (output->kept) unlink(output->kept);
-        free(output->kept);
-        output->kept = NULL;
-        write_folder_through(output->target);
-    }
-    return true;
+    file = gprojx_output_open(output, &error);
+    return (file && gprojx_output_close(output, file, write(t, file), &error)) ||
+           fail_output(t, EXIT_REFUSED, output, &error);
 }
 
 /* All outputs are complete on the disk before the first is put in its place. */
 static bool write_outputs(tool *t) {
-    bool good;
+    gproj_error error;
     if (!write_output(t, &t->output[OUTPUT_PICTURE], write_picture) ||
         !write_output(t, &t->output[OUTPUT_FORCES], write_forces) ||
         !write_output(t, &t->output[OUTPUT_MESH], write_mesh) ||
@@ -2781,10 +2561,8 @@ static bool write_outputs(tool *t) {
         !write_output(t, &t->output[OUTPUT_STATE], write_state) ||
         !write_output(t, &t->output[OUTPUT_REPORT], write_report))
         return false;
-    hold_signals(true);
-    good = put_in_place(t);
-    hold_signals(false);
-    return good;
+    return gprojx_outputs_place(t->output, OUTPUT_COUNT, &error) ||
+           fail_output(t, EXIT_REFUSED, &t->output[error.index], &error);
 }
 
 /* What was printed must have arrived, too. */
@@ -2903,9 +2681,9 @@ static void print_summary(const tool *t) {
 static bool start_threads(tool *t) {
     t->host.clock.now = now;
     if (t->threads < 2) return true;
-    hold_signals(true); /* they are for the main thread */
+    gprojx_hold_signals(true); /* they are for the main thread */
     t->pool = gprojx_threads_create(t->threads);
-    hold_signals(false);
+    gprojx_hold_signals(false);
     if (!t->pool) return fail(t, EXIT_MEMORY, "%ld threads cannot be had", (long)t->threads);
     t->host.parallel = gprojx_threads_hook(t->pool);
     return true;
@@ -2925,10 +2703,7 @@ static bool run(tool *t) {
 
 static void clean_up(tool *t) {
     int32_t i;
-    for (i = 0; i < OUTPUT_COUNT; ++i) {
-        if (t->output[i].temporary) unlink(t->output[i].temporary);
-        free(t->output[i].temporary), free(t->output[i].kept), free(t->output[i].target);
-    }
+    gprojx_outputs_discard(t->output, OUTPUT_COUNT, "guidedproj");
     gproj_form_destroy(t->form);
     for (i = 0; i < t->curve_count; ++i) gproj_curve_destroy(t->curve[i]);
     gproj_surface_destroy(t->surface);
@@ -2952,7 +2727,7 @@ int main(int argc, char **argv) {
     t.start = now(NULL);
     t.threads = 1;
     t.file_limit = 1024;
-    watch_signals(&t);
+    gprojx_watch_signals(t.output, OUTPUT_COUNT);
     if (read_command_line(&t, argc, argv)) {
         if (t.help)
             print_help(), finish_printing(&t);
@@ -2962,9 +2737,6 @@ int main(int argc, char **argv) {
             t.exit_code = verdict_code(&t);
     }
     exit_code = t.exit_code;
-    hold_signals(true);
     clean_up(&t);
-    running = NULL;
-    hold_signals(false);
     return exit_code;
 }
