@@ -1439,9 +1439,8 @@ static const tool_option options[] = {
     {"output", "FILE", "the result, .obj, .off, .stl or .ply (needed)", set_output, SETS(output[OUTPUT_MESH]),
      .letter = 'o', .section = "files"},
     {"encoding", "WORD",
-     "of .stl and .ply outputs: little (binary, little-endian, if left out), big (PLY only) or ascii. PLY keeps all "
-     "digits, "
-     "binary STL those of floats; STL has triangles only",
+     "of .stl and .ply outputs: little (binary, little-endian, if left out), big (PLY only) or ascii. PLY keeps "
+     "all digits, binary STL those of floats; STL has triangles only",
      set_encoding, SETS(encoding)},
     {"file-limit", "MB", "files are read up to this size (1024)", set_file_limit, SETS(file_limit)},
 
@@ -1465,8 +1464,7 @@ static const tool_option options[] = {
      set_subdivision, SETS(subdivision), .kind = BEGINNING},
     {"weld", "[=TOL]",
      "boundary vertices at the same place, within TOL mean edge lengths (1e-6; 0: exactly), become one: seams are "
-     "closed, "
-     "and the triangles of an STL joined. Vertices are numbered anew, and polylines left out",
+     "closed, and the triangles of an STL joined. Vertices are numbered anew, and polylines left out",
      set_weld, SETS(weld)},
     {"lift", "HEIGHT", "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly",
      set_lift, SETS(lift), .kind = BEGINNING},
@@ -1603,20 +1601,16 @@ static const tool_option options[] = {
     {"support", "FILE", "the panels between the mesh and its --offset, in a format as the output's: one quad an edge",
      set_output, SETS(output[OUTPUT_SUPPORT]), .needs = &an_offset},
     {"panels", "FILE",
-     "the faces laid flat at true size on sheets, to be cut, .svg or .dxf (R12), in millimetres: each with its number "
-     "and, "
-     "along the edges, the neighbours' numbers and dihedral angles, measured behind (below 180 degrees a ridge, above "
-     "a "
-     "valley). With --support also its panels (S and the edge's number). Refused, by name, where a panel is not planar "
-     "to "
-     "1e-6 of half its perimeter",
+     "the faces laid flat at true size on sheets, to be cut, .svg or .dxf (R12), in millimetres: each with its "
+     "number and, along the edges, the neighbours' numbers and dihedral angles, measured behind (below 180 degrees"
+     " a ridge, above a valley). With --support also its panels (S and the edge's number). Refused, by name, where"
+     " a panel is not planar to 1e-6 of half its perimeter",
      set_output, SETS(output[OUTPUT_PANELS])},
     {"panel-list", "FILE", "CSV: the panels' areas and sizes, their edges' lengths and dihedral angles", set_output,
      SETS(output[OUTPUT_PANEL_LIST]), .needs = &panels},
     {"sheet", "W,H[,GAP]",
-     "of the panels: width and height in mm, and the gap between panels and at the border (a twentieth of the mean "
-     "edge). "
-     "If left out, one sheet holds all",
+     "of the panels: width and height in mm, and the gap between panels and at the border (a twentieth of the mean"
+     " edge). If left out, one sheet holds all",
      set_sheet, SETS(sheet), .needs = &panels},
     {"panel-scale", "S", "millimetres that a unit of the mesh is (1; 1000 for a mesh in metres)", set_panel_scale,
      SETS(sheet.scale), .needs = &panels},
