@@ -1517,6 +1517,14 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
                                  gproj_error *error);
+/* The bytes that the form will hold at most while the solve that was begun runs, its own and its system's, told before
+   they are taken: the matrix is analysed, which the solve needs not repeat, but neither the factor nor the arrays of
+   iterations are taken. The peak is no less than 0.7 of it, and no more unless many rows come in on the way: it is the
+   sum for the rows as they are, with 1/32 more for small work, or with 1/4 more for such rows (of the guard where steps
+   are found by multipliers, of corners in smooth solves). Compression that shapes resist has been seen to take 1.3 times
+   that. The mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a
+   callback asks, no memory for the analysis. */
+GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
 GPROJ_API void gproj_solve_stop(gproj_form *form);
@@ -2337,6 +2345,7 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) 
 typedef struct gproji_heap {
     gproj_allocator hook; /* without `allocate`: the C library */
     gproj_memory account;
+    size_t *foretold; /* not NULL: blocks are not taken, their bytes are added up here */
 } gproji_heap;
 
 GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
@@ -2351,6 +2360,9 @@ GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
 }
+
+/* a + b, or SIZE_MAX if that is more. */
+GPROJI_INTERNAL size_t gproji_add_bytes(size_t a, size_t b) { return b < SIZE_MAX - a ? a + b : SIZE_MAX; }
 
 /* May the heap hold `more` bytes in place of `less` of those it has? */
 GPROJI_INTERNAL bool gproji_grant(const gproji_heap *heap, size_t less, size_t more) {
@@ -2368,6 +2380,10 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
 GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
+    if (heap->foretold) {
+        *heap->foretold = gproji_add_bytes(*heap->foretold, bytes);
+        return NULL;
+    }
     heap->account.allocations++;
     if (!gproji_grant(heap, 0, bytes)) return NULL;
     block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
@@ -2508,8 +2524,8 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
-    size_t bytes = possible ? gproji_bytes((size_t)count, size) : 0;
-    void *block = possible ? gproji_take(pool->heap, bytes, 1) : NULL;
+    size_t bytes = possible ? gproji_bytes((size_t)count, size) : SIZE_MAX; /* which is refused */
+    void *block = gproji_take(pool->heap, bytes, 1);
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
     if (!block) {
         pool->failed = true;
@@ -7674,8 +7690,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
    An iteration then evaluates rows into local gradients, and each front adds its rows' outer products when the
    factorisation comes to it, without a search and without an allocation.
 
-   Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
-   a row ends it. Coefficients, constants and weights may change freely. */
+   Invariant: `compiled` is true exactly while all compiled arrays, those of step 5 if they are taken, agree with the
+   rows; adding a variable, a group or a row ends it. Coefficients, constants and weights may change freely. */
 
 enum {
     GPROJI_BLOCK_MAX = 8,        /* variables in a block */
@@ -9072,24 +9088,29 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
-/* Step 5: takes the arrays that iterations need. */
+/* Step 5: takes the arrays that iterations need, once; asks for all of them even if one is refused, see
+   gproji_foretell. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count, wide = (size_t)s->wide_count;
     int32_t i, r;
     uint32_t t;
+    bool done = true;
+    if (s->vector.sides) return true;
+    s->hinges.taken = 0;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local.gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.gradient);
         g->tally.part = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        if (!g->local.gradient || !g->tally.part) return false;
+        done = done && g->local.gradient && g->tally.part;
         if (g->kind == GPROJ_BOUND) s->hinges.taken += (size_t)g->row_count;
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
-        for (r = 0; g->has_wide && r < g->row_count; ++r) {
+        for (r = 0; done && g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
-    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) return false; /* a product overflows */
+    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) /* a product overflows: refused */
+        return gproji_take(&s->own, SIZE_MAX, 1) != NULL;
     s->wide.taken = wide;
     s->hinges.list = (gproji_hinge *)gproji_take(&s->own, s->hinges.taken, sizeof *s->hinges.list);
     s->vector.gradient = (double *)gproji_take(&s->own, n, sizeof *s->vector.gradient);
@@ -9097,13 +9118,12 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     s->vector.sides = s->vector.step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->vector.sides);
     s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
     s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
-    if (!s->hinges.list || !s->vector.gradient || !s->vector.saved || !s->vector.sides || !s->wide.matrix ||
-        !s->wide.vector)
-        return false;
-    if (wide == 0) return true;
+    done = done && s->hinges.list && s->vector.gradient && s->vector.saved && s->vector.sides && s->wide.matrix &&
+           s->wide.vector;
+    if (wide == 0) return done;
     s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
     s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
-    return s->wide.residual && s->wide.balance;
+    return done && s->wide.residual && s->wide.balance;
 }
 
 /* -- evaluation -- */
@@ -9955,13 +9975,12 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
-   does not exist while steps are found by multipliers. */
-GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
+/* Compiles the rows but for step 5, unless that is done. False: no memory. */
+GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
-    if (s->compiled) return GPROJ_OK;
+    if (s->compiled) return true;
     gproji_wake_groups(s);
     /* Steps 1 and 2; the decision is remembered as stale if it is overruled. */
     if (gproji_compile_variables(s) && gproji_schur_decide(s)) {
@@ -9969,15 +9988,24 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
         if (s->schur.stale) gproji_schur_forget(s);
         code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s); /* steps 3 and 4 */
     }
-    if (code == GPROJ_OK) {
-        s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-        s->compiled = gproji_take_compiled_arrays(s) && gproji_cholesky_take_numeric(s->cholesky); /* step 5 */
-    }
-    if (s->compiled) return GPROJ_OK;
+    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
+    s->compiled = code == GPROJ_OK;
+    return s->compiled;
+}
+
+GPROJI_INTERNAL gproj_code gproji_fail_compile(gproj_system *s) {
     gproji_system_forget(s);
     if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
         return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
     return gproji_fail_memory(&s->error);
+}
+
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
+   does not exist while steps are found by multipliers. */
+GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
+    if (gproji_compile_rows(s, whole) && gproji_take_compiled_arrays(s) && gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_OK;
+    return gproji_fail_compile(s);
 }
 
 /* -- steps -- */
@@ -11813,20 +11841,21 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     }
 }
 
-/* All multipliers are 0. */
+/* All multipliers are 0. Asks for all arrays even if one is refused, see gproji_foretell. */
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    bool done;
     int32_t i;
     if (!s->vector.sum)
         s->vector.sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->vector.sum);
-    if (!s->vector.sum) return false;
+    done = s->vector.sum != NULL;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
         if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
-        if (!g->multiplier) return false;
-        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+        done = done && g->multiplier;
+        if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
     }
-    return true;
+    return done;
 }
 
 /* Does the row have a multiplier now? */
@@ -12244,6 +12273,27 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     s->changed = changed;
     if (changed && nearest) gproji_see_nearest(loop);
     if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+}
+
+/* Analyses the matrix, and returns the bytes that a run will take besides those that the system holds then: asks for
+   all arrays while both heaps add up instead of taking. Rows that come in on the way mean another analysis, with a
+   larger matrix: there is no knowing how many will, so these are a guess. After an error 0. */
+GPROJI_INTERNAL size_t gproji_foretell(const gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    size_t more = 0, all;
+    if (!gproji_compile_rows(s, loop->options.nearest)) {
+        gproji_fail_compile(s);
+        return 0;
+    }
+    s->own.foretold = s->cholesky->own.foretold = &more;
+    gproji_take_compiled_arrays(s);
+    gproji_cholesky_take_numeric(s->cholesky);
+    if (loop->options.nearest && !s->vector.sum) gproji_start_multipliers(s);
+    s->own.foretold = s->cholesky->own.foretold = NULL;
+    gproji_error_clear(&s->cholesky->error);
+    /* Rows come in where dormant ones have no multipliers, and where corners are kept. */
+    all = gproji_add_bytes(gproj_system_memory(s).used, more);
+    return gproji_add_bytes(more, all / (s->schur.on || loop->options.smooth ? 4 : 32));
 }
 
 /* Runs for `seconds` (< 0: to the end), at least one iteration. Returns whether the solve is at its end; the result
@@ -23983,6 +24033,24 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
 }
 
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
+
+GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error) {
+    size_t more;
+    gproji_error_clear(error);
+    if (form && !gproji_form_ready(form)) {
+        gproji_pass_on(error, gproj_form_error(form));
+        return 0;
+    }
+    if (!gproj_solve_is_on(form) || gproji_is_solving(form->system)) {
+        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "solve memory: ask between gproj_solve_begin and the end of that solve, not in a callback");
+        return 0;
+    }
+    more = gproji_foretell(&form->solve.loop);
+    if (gproji_form_ready(form)) return gproji_add_bytes(gproj_form_memory(form).used, more);
+    gproji_pass_on(error, gproj_form_error(form));
+    return 0;
+}
 
 GPROJ_API void gproj_solve_stop(gproj_form *form) {
     if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;
