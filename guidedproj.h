@@ -1883,6 +1883,22 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #include <immintrin.h>
 #endif
 
+/* Largest counts, for which errors say GPROJ_ERROR_SIZE: numbers made from these counts must fit their types. Tests
+   compile with a small index. */
+#ifndef GPROJI_INDEX_MAX
+#define GPROJI_INDEX_MAX INT32_MAX
+#endif
+enum {
+    GPROJI_VERTICES_MAX = GPROJI_INDEX_MAX / 3 - 1,      /* in a mesh: 3 coordinates each */
+    GPROJI_CORNERS_MAX = GPROJI_INDEX_MAX / 2 - 1,       /* in all faces of a mesh: 2 half-edges each */
+    GPROJI_POLYLINE_VERTICES_MAX = GPROJI_INDEX_MAX / 2, /* in all polylines of a mesh: room doubles */
+    GPROJI_INTS_MAX = GPROJI_INDEX_MAX - 1,              /* in a growing array */
+    GPROJI_VARIABLES_MAX = GPROJI_INDEX_MAX / 2,         /* of a system: a term's two variables */
+    GPROJI_ROWS_MAX = GPROJI_INDEX_MAX - 1,              /* in a group */
+    GPROJI_COLUMNS_MAX = GPROJI_INDEX_MAX - 64           /* of a matrix, with padding */
+};
+#define GPROJI_TERMS_MAX (2 * (size_t)GPROJI_INDEX_MAX) /* uint32_t: terms, or row variables, in a group */
+
 GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
 GPROJI_INLINE int32_t gproji_max(int32_t a, int32_t b) { return a > b ? a : b; }
 GPROJI_INLINE double gproji_fmin(double a, double b) { return a < b ? a : b; }
@@ -2448,12 +2464,10 @@ typedef struct gproji_ints {
     size_t count, capacity;
 } gproji_ints;
 
-#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* integers in an array */
-
 /* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
     void *block = ints->data;
-    if (ints->count >= GPROJI_INTS_MAX) return false;
+    if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
     if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
     ints->data = (int32_t *)block;
     ints->data[ints->count++] = value;
@@ -6182,8 +6196,9 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
     for (i = 0; i < node_count; ++i) {
-        if (node_size[i] > INT32_MAX - 64 - columns)
-            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more than 2^31 variables");
+        if (node_size[i] > GPROJI_COLUMNS_MAX - columns)
+            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "the matrix would have more than %d columns", (int32_t)GPROJI_COLUMNS_MAX);
         columns += node_size[i];
     }
     graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
@@ -6204,7 +6219,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
                                                  const int32_t *row) {
     int32_t j;
     int64_t p;
-    if (n < 0 || n > INT32_MAX - 64)
+    if (n < 0 || n > GPROJI_COLUMNS_MAX)
         return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "a matrix cannot have %d columns", n);
     if (n == 0) return GPROJ_OK;
@@ -6905,7 +6920,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     int32_t i, j;
     int64_t e;
     if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
-    if (p->rows < 0 || p->columns < 0 || p->columns == INT32_MAX || p->rows == INT32_MAX)
+    if (p->rows < 0 || p->columns < 0 || p->columns > GPROJI_COLUMNS_MAX || p->rows > GPROJI_ROWS_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
                            p->rows, p->columns);
     if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
@@ -8135,8 +8150,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
                     block);
         return -1;
     }
-    if (count > INT32_MAX / 2 - s->variable_count) {
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more variables than 32-bit numbers can count");
+    if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
+        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the system would have more than %d variables",
+                    (int32_t)GPROJI_VARIABLES_MAX);
         return -1;
     }
     for (i = 0; values && i < count; ++i) {
@@ -8382,18 +8398,25 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for so many further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
-    return g->term && g->local.variable && wanted <= INT32_MAX && wanted <= g->capacity.row &&
+    return g->term && g->local.variable && wanted - 1 <= GPROJI_ROWS_MAX && wanted <= g->capacity.row &&
            (!g->share || wanted <= g->capacity.share) && g->term_count + terms <= g->capacity.term &&
-           g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
-           gproji_local_count(g) + locals < UINT32_MAX;
+           g->term_count + terms <= GPROJI_TERMS_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
+           gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
+}
+
+/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together; false. */
+GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
+    gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE, g ? (int64_t)(g - s->group) : -1,
+                g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
+                g ? g->name : "");
+    return false;
 }
 
 /* Makes this room, or fails. */
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
-    if (rows > (size_t)(INT32_MAX - 1 - g->row_count) || terms >= UINT32_MAX - g->term_count ||
-        locals >= UINT32_MAX - gproji_local_count(g))
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
-                    "group '%s' has too many rows or terms", g->name);
+    if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
+        locals > GPROJI_TERMS_MAX - gproji_local_count(g))
+        gproji_refuse_rows(s, g);
     else if (!gproji_reserve_rows(s, g, rows, terms + 1, locals + 1)) /* also of a row without terms */
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
@@ -8525,7 +8548,8 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     size_t count = 0;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
-    own = count < UINT32_MAX ? (gproj_term *)gproji_take(&s->own, count, sizeof *own) : NULL;
+    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    own = (gproj_term *)gproji_take(&s->own, count, sizeof *own);
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
@@ -8565,7 +8589,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     if (!gproji_is_finite(constant) || (coefficients && !gproji_are_finite(coefficients, count)))
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
-    if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
+    if (coefficients && g->common && !gproji_own_terms(s, g))
+        return s->error.code ? s->error.code : gproji_fail_memory(&s->error);
     if (coefficients && row < g->zero_sum) {
         /* With other coefficients gradients need not add up to nothing any more. */
         g->zero_sum = 0;
@@ -8772,7 +8797,7 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
         in->row_room += (size_t)s->group[i].row_count;
         in->entry_room += gproji_local_count(&s->group[i]);
     }
-    if (in->row_room > UINT32_MAX || in->entry_room > UINT32_MAX) return false;
+    if (in->row_room > GPROJI_TERMS_MAX || in->entry_room > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
@@ -8971,7 +8996,8 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
         row->term = known->term;
         return true;
     }
-    enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
+    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    enough = gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
     g->term = (gproj_term *)term;
     if (!enough) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
@@ -9766,7 +9792,7 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     int64_t links = d->link_start[d->elements];
     uint32_t k;
     int32_t v, e;
-    if (links >= UINT32_MAX) return false;
+    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     in->node_count = d->elements;
     in->row_count = (uint32_t)s->nodes.count;
     in->row_room = (size_t)s->nodes.count + 2;
@@ -9995,6 +10021,7 @@ GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
 
 GPROJI_INTERNAL gproj_code gproji_fail_compile(gproj_system *s) {
     gproji_system_forget(s);
+    if (s->error.code) return s->error.code;
     if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
         return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
     return gproji_fail_memory(&s->error);
@@ -12679,11 +12706,6 @@ GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g)
 
 /* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
-/* 3 * vertices and 2 * (corners of all faces) must be int32_t. */
-enum {
-    GPROJI_VERTICES_MAX = INT32_MAX / 3 - 1,
-    GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
-};
 
 /* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
@@ -13837,7 +13859,7 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
 /* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
     if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
-    if (ints->count < GPROJI_INTS_MAX)
+    if (ints->count < (size_t)GPROJI_INTS_MAX)
         reader->code = gproji_fail_memory(reader->error);
     else
         gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "the text has too many elements; split the mesh");
@@ -14843,7 +14865,7 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     for (level = 1; !code && level <= options->levels; ++level) {
         gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
         if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > INT32_MAX) {
+            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX) {
             code = gproji_fail(
                 error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                 "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
@@ -15781,9 +15803,9 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > INT32_MAX / 2)
+    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
+                           "the polylines would have more than %d vertices", (int32_t)GPROJI_POLYLINE_VERTICES_MAX);
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
         int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room;
         size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
