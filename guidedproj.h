@@ -1518,10 +1518,10 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
                                  gproj_error *error);
 /* The bytes that the form will hold at most while the solve that was begun runs, its own and its system's, told before
-   they are taken: the matrix is analysed, which the solve needs not repeat, but neither the factor nor the arrays of
+   they are taken: the matrix is analysed, which the solve need not repeat, but neither the factor nor the arrays of
    iterations are taken. The peak is no less than 0.7 of it, and no more unless many rows come in on the way: it is the
    sum for the rows as they are, with 1/32 more for small work, or with 1/4 more for such rows (of the guard where steps
-   are found by multipliers, of corners in smooth solves). Compression that shapes resist has been seen to take 1.3 times
+   are found by multipliers, of corners in smooth solves). Compression that shapes resist has been seen to take 1.2 times
    that. The mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a
    callback asks, no memory for the analysis. */
 GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
@@ -10001,7 +10001,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* Compiles the rows but for step 5, unless that is done. False: no memory. */
+/* Compiles the rows but for step 5, unless that is done. False: it failed, see gproji_fail_compile. */
 GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
@@ -10019,6 +10019,7 @@ GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     return s->compiled;
 }
 
+/* Forgets a compilation that failed, and notes why. */
 GPROJI_INTERNAL gproj_code gproji_fail_compile(gproj_system *s) {
     gproji_system_forget(s);
     if (s->error.code) return s->error.code;
