@@ -1891,7 +1891,8 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 enum {
     GPROJI_VERTICES_MAX = GPROJI_INDEX_MAX / 3 - 1,      /* in a mesh: 3 coordinates each */
     GPROJI_CORNERS_MAX = GPROJI_INDEX_MAX / 2 - 1,       /* in all faces of a mesh: 2 half-edges each */
-    GPROJI_POLYLINE_VERTICES_MAX = GPROJI_INDEX_MAX / 2, /* in all polylines of a mesh: room doubles */
+    GPROJI_POLYLINE_VERTICES_MAX =
+        GPROJI_INDEX_MAX, /* in all polylines of a mesh; in an edit, whose room doubles, half */
     GPROJI_INTS_MAX = GPROJI_INDEX_MAX - 1,              /* in a growing array */
     GPROJI_VARIABLES_MAX = GPROJI_INDEX_MAX / 2,         /* of a system: a term's two variables */
     GPROJI_ROWS_MAX = GPROJI_INDEX_MAX - 1,              /* in a group */
@@ -15804,9 +15805,9 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX)
+    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the polylines would have more than %d vertices", (int32_t)GPROJI_POLYLINE_VERTICES_MAX);
+                           "the polylines would have more than %d vertices", (int32_t)GPROJI_POLYLINE_VERTICES_MAX / 2);
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
         int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room;
         size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
