@@ -1517,6 +1517,14 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
                                  gproj_error *error);
+/* The bytes that the form will hold at most while the solve that was begun runs, its own and its system's, told before
+   they are taken: the matrix is analysed, which the solve need not repeat, but neither the factor nor the arrays of
+   iterations are taken. The peak is no less than 0.7 of it, and no more unless many rows come in on the way: it is the
+   sum for the rows as they are, with 1/32 more for small work, or with 1/4 more for such rows (of the guard where steps
+   are found by multipliers, of corners in smooth solves). Compression that shapes resist has been seen to take 1.2 times
+   that. The mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a
+   callback asks, no memory for the analysis. */
+GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
 GPROJ_API void gproj_solve_stop(gproj_form *form);
@@ -1874,6 +1882,23 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #if GPROJI_CHOICE || (GPROJI_SIMD && defined(__AVX512F__))
 #include <immintrin.h>
 #endif
+
+/* Largest counts, for which errors say GPROJ_ERROR_SIZE: numbers made from these counts must fit their types. Tests
+   compile with a small index. */
+#ifndef GPROJI_INDEX_MAX
+#define GPROJI_INDEX_MAX INT32_MAX
+#endif
+enum {
+    GPROJI_VERTICES_MAX = GPROJI_INDEX_MAX / 3 - 1,      /* in a mesh: 3 coordinates each */
+    GPROJI_CORNERS_MAX = GPROJI_INDEX_MAX / 2 - 1,       /* in all faces of a mesh: 2 half-edges each */
+    GPROJI_POLYLINE_VERTICES_MAX =
+        GPROJI_INDEX_MAX, /* in all polylines of a mesh; in an edit, whose room doubles, half */
+    GPROJI_INTS_MAX = GPROJI_INDEX_MAX - 1,              /* in a growing array */
+    GPROJI_VARIABLES_MAX = GPROJI_INDEX_MAX / 2,         /* of a system: a term's two variables */
+    GPROJI_ROWS_MAX = GPROJI_INDEX_MAX - 1,              /* in a group */
+    GPROJI_COLUMNS_MAX = GPROJI_INDEX_MAX - 64           /* of a matrix, with padding */
+};
+#define GPROJI_TERMS_MAX (2 * (size_t)GPROJI_INDEX_MAX) /* uint32_t: terms, or row variables, in a group */
 
 GPROJI_INLINE int32_t gproji_min(int32_t a, int32_t b) { return a < b ? a : b; }
 GPROJI_INLINE int32_t gproji_max(int32_t a, int32_t b) { return a > b ? a : b; }
@@ -2337,6 +2362,7 @@ GPROJ_API size_t gproj_number_write(double value, char text[GPROJ_NUMBER_SIZE]) 
 typedef struct gproji_heap {
     gproj_allocator hook; /* without `allocate`: the C library */
     gproj_memory account;
+    size_t *foretold; /* not NULL: blocks are not taken, their bytes are added up here */
 } gproji_heap;
 
 GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
@@ -2351,6 +2377,9 @@ GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
 }
+
+/* a + b, or SIZE_MAX if that is more. */
+GPROJI_INTERNAL size_t gproji_add_bytes(size_t a, size_t b) { return b < SIZE_MAX - a ? a + b : SIZE_MAX; }
 
 /* May the heap hold `more` bytes in place of `less` of those it has? */
 GPROJI_INTERNAL bool gproji_grant(const gproji_heap *heap, size_t less, size_t more) {
@@ -2368,6 +2397,10 @@ GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more)
 GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     void *block;
+    if (heap->foretold) {
+        *heap->foretold = gproji_add_bytes(*heap->foretold, bytes);
+        return NULL;
+    }
     heap->account.allocations++;
     if (!gproji_grant(heap, 0, bytes)) return NULL;
     block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
@@ -2432,12 +2465,10 @@ typedef struct gproji_ints {
     size_t count, capacity;
 } gproji_ints;
 
-#define GPROJI_INTS_MAX ((size_t)INT32_MAX - 1) /* integers in an array */
-
 /* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
     void *block = ints->data;
-    if (ints->count >= GPROJI_INTS_MAX) return false;
+    if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
     if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
     ints->data = (int32_t *)block;
     ints->data[ints->count++] = value;
@@ -2508,8 +2539,8 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
-    size_t bytes = possible ? gproji_bytes((size_t)count, size) : 0;
-    void *block = possible ? gproji_take(pool->heap, bytes, 1) : NULL;
+    size_t bytes = possible ? gproji_bytes((size_t)count, size) : SIZE_MAX; /* which is refused */
+    void *block = gproji_take(pool->heap, bytes, 1);
     GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
     if (!block) {
         pool->failed = true;
@@ -6166,8 +6197,9 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
     for (i = 0; i < node_count; ++i) {
-        if (node_size[i] > INT32_MAX - 64 - columns)
-            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more than 2^31 variables");
+        if (node_size[i] > GPROJI_COLUMNS_MAX - columns)
+            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "the matrix would have more than %d columns", (int32_t)GPROJI_COLUMNS_MAX);
         columns += node_size[i];
     }
     graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
@@ -6188,7 +6220,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, c
                                                  const int32_t *row) {
     int32_t j;
     int64_t p;
-    if (n < 0 || n > INT32_MAX - 64)
+    if (n < 0 || n > GPROJI_COLUMNS_MAX)
         return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "a matrix cannot have %d columns", n);
     if (n == 0) return GPROJ_OK;
@@ -6889,7 +6921,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     int32_t i, j;
     int64_t e;
     if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
-    if (p->rows < 0 || p->columns < 0 || p->columns == INT32_MAX || p->rows == INT32_MAX)
+    if (p->rows < 0 || p->columns < 0 || p->columns > GPROJI_COLUMNS_MAX || p->rows > GPROJI_ROWS_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
                            p->rows, p->columns);
     if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
@@ -7674,8 +7706,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
    An iteration then evaluates rows into local gradients, and each front adds its rows' outer products when the
    factorisation comes to it, without a search and without an allocation.
 
-   Invariant: `compiled` is true exactly while all compiled arrays agree with the rows; adding a variable, a group or
-   a row ends it. Coefficients, constants and weights may change freely. */
+   Invariant: `compiled` is true exactly while all compiled arrays, those of step 5 if they are taken, agree with the
+   rows; adding a variable, a group or a row ends it. Coefficients, constants and weights may change freely. */
 
 enum {
     GPROJI_BLOCK_MAX = 8,        /* variables in a block */
@@ -8119,8 +8151,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
                     block);
         return -1;
     }
-    if (count > INT32_MAX / 2 - s->variable_count) {
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more variables than 32-bit numbers can count");
+    if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
+        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the system would have more than %d variables",
+                    (int32_t)GPROJI_VARIABLES_MAX);
         return -1;
     }
     for (i = 0; values && i < count; ++i) {
@@ -8366,18 +8399,25 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for so many further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
-    return g->term && g->local.variable && wanted <= INT32_MAX && wanted <= g->capacity.row &&
+    return g->term && g->local.variable && wanted - 1 <= GPROJI_ROWS_MAX && wanted <= g->capacity.row &&
            (!g->share || wanted <= g->capacity.share) && g->term_count + terms <= g->capacity.term &&
-           g->term_count + terms < UINT32_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
-           gproji_local_count(g) + locals < UINT32_MAX;
+           g->term_count + terms <= GPROJI_TERMS_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
+           gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
+}
+
+/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together; false. */
+GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
+    gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE, g ? (int64_t)(g - s->group) : -1,
+                g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
+                g ? g->name : "");
+    return false;
 }
 
 /* Makes this room, or fails. */
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
-    if (rows > (size_t)(INT32_MAX - 1 - g->row_count) || terms >= UINT32_MAX - g->term_count ||
-        locals >= UINT32_MAX - gproji_local_count(g))
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_GROUP, (int32_t)(g - s->group),
-                    "group '%s' has too many rows or terms", g->name);
+    if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
+        locals > GPROJI_TERMS_MAX - gproji_local_count(g))
+        gproji_refuse_rows(s, g);
     else if (!gproji_reserve_rows(s, g, rows, terms + 1, locals + 1)) /* also of a row without terms */
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
@@ -8509,7 +8549,8 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     size_t count = 0;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
-    own = count < UINT32_MAX ? (gproj_term *)gproji_take(&s->own, count, sizeof *own) : NULL;
+    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    own = (gproj_term *)gproji_take(&s->own, count, sizeof *own);
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
@@ -8549,7 +8590,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     if (!gproji_is_finite(constant) || (coefficients && !gproji_are_finite(coefficients, count)))
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
-    if (coefficients && g->common && !gproji_own_terms(s, g)) return gproji_fail_memory(&s->error);
+    if (coefficients && g->common && !gproji_own_terms(s, g))
+        return s->error.code ? s->error.code : gproji_fail_memory(&s->error);
     if (coefficients && row < g->zero_sum) {
         /* With other coefficients gradients need not add up to nothing any more. */
         g->zero_sum = 0;
@@ -8756,7 +8798,7 @@ GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in
         in->row_room += (size_t)s->group[i].row_count;
         in->entry_room += gproji_local_count(&s->group[i]);
     }
-    if (in->row_room > UINT32_MAX || in->entry_room > UINT32_MAX) return false;
+    if (in->row_room > GPROJI_TERMS_MAX || in->entry_room > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
     in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
     in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
@@ -8955,7 +8997,8 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
         row->term = known->term;
         return true;
     }
-    enough = wanted < UINT32_MAX && gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
+    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    enough = gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
     g->term = (gproj_term *)term;
     if (!enough) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
@@ -9072,24 +9115,29 @@ GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
     return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
-/* Step 5: takes the arrays that iterations need. */
+/* Step 5: takes the arrays that iterations need, once; asks for all of them even if one is refused, see
+   gproji_foretell. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     size_t n = (size_t)s->variable_count, wide = (size_t)s->wide_count;
     int32_t i, r;
     uint32_t t;
+    bool done = true;
+    if (s->vector.sides) return true;
+    s->hinges.taken = 0;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->local.gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.gradient);
         g->tally.part = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        if (!g->local.gradient || !g->tally.part) return false;
+        done = done && g->local.gradient && g->tally.part;
         if (g->kind == GPROJ_BOUND) s->hinges.taken += (size_t)g->row_count;
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
-        for (r = 0; g->has_wide && r < g->row_count; ++r) {
+        for (r = 0; done && g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
-    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) return false; /* a product overflows */
+    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) /* a product overflows: refused */
+        return gproji_take(&s->own, SIZE_MAX, 1) != NULL;
     s->wide.taken = wide;
     s->hinges.list = (gproji_hinge *)gproji_take(&s->own, s->hinges.taken, sizeof *s->hinges.list);
     s->vector.gradient = (double *)gproji_take(&s->own, n, sizeof *s->vector.gradient);
@@ -9097,13 +9145,12 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     s->vector.sides = s->vector.step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->vector.sides);
     s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
     s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
-    if (!s->hinges.list || !s->vector.gradient || !s->vector.saved || !s->vector.sides || !s->wide.matrix ||
-        !s->wide.vector)
-        return false;
-    if (wide == 0) return true;
+    done = done && s->hinges.list && s->vector.gradient && s->vector.saved && s->vector.sides && s->wide.matrix &&
+           s->wide.vector;
+    if (wide == 0) return done;
     s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
     s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
-    return s->wide.residual && s->wide.balance;
+    return done && s->wide.residual && s->wide.balance;
 }
 
 /* -- evaluation -- */
@@ -9746,7 +9793,7 @@ GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *i
     int64_t links = d->link_start[d->elements];
     uint32_t k;
     int32_t v, e;
-    if (links >= UINT32_MAX) return false;
+    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     in->node_count = d->elements;
     in->row_count = (uint32_t)s->nodes.count;
     in->row_room = (size_t)s->nodes.count + 2;
@@ -9955,13 +10002,12 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
     return woken;
 }
 
-/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
-   does not exist while steps are found by multipliers. */
-GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
+/* Compiles the rows but for step 5, unless that is done. False: it failed, see gproji_fail_compile. */
+GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
-    if (s->compiled) return GPROJ_OK;
+    if (s->compiled) return true;
     gproji_wake_groups(s);
     /* Steps 1 and 2; the decision is remembered as stale if it is overruled. */
     if (gproji_compile_variables(s) && gproji_schur_decide(s)) {
@@ -9969,15 +10015,26 @@ GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
         if (s->schur.stale) gproji_schur_forget(s);
         code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s); /* steps 3 and 4 */
     }
-    if (code == GPROJ_OK) {
-        s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
-        s->compiled = gproji_take_compiled_arrays(s) && gproji_cholesky_take_numeric(s->cholesky); /* step 5 */
-    }
-    if (s->compiled) return GPROJ_OK;
+    s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
+    s->compiled = code == GPROJ_OK;
+    return s->compiled;
+}
+
+/* Forgets a compilation that failed, and notes why. */
+GPROJI_INTERNAL gproj_code gproji_fail_compile(gproj_system *s) {
     gproji_system_forget(s);
+    if (s->error.code) return s->error.code;
     if (gproj_cholesky_error(s->cholesky)->code != GPROJ_OK)
         return gproji_pass_on(&s->error, gproj_cholesky_error(s->cholesky));
     return gproji_fail_memory(&s->error);
+}
+
+/* Makes the rows ready for iterations; nothing to do when they are. whole: for the matrix with all variables, which
+   does not exist while steps are found by multipliers. */
+GPROJI_INTERNAL gproj_code gproji_compile(gproj_system *s, bool whole) {
+    if (gproji_compile_rows(s, whole) && gproji_take_compiled_arrays(s) && gproji_cholesky_take_numeric(s->cholesky))
+        return GPROJ_OK;
+    return gproji_fail_compile(s);
 }
 
 /* -- steps -- */
@@ -11821,20 +11878,21 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
     }
 }
 
-/* All multipliers are 0. */
+/* All multipliers are 0. Asks for all arrays even if one is refused, see gproji_foretell. */
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    bool done;
     int32_t i;
     if (!s->vector.sum)
         s->vector.sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->vector.sum);
-    if (!s->vector.sum) return false;
+    done = s->vector.sum != NULL;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
         if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
-        if (!g->multiplier) return false;
-        memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+        done = done && g->multiplier;
+        if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
     }
-    return true;
+    return done;
 }
 
 /* Does the row have a multiplier now? */
@@ -12255,6 +12313,27 @@ GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
     if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
 }
 
+/* Analyses the matrix, and returns the bytes that a run will take besides those that the system holds then: asks for
+   all arrays while both heaps add up instead of taking. Rows that come in on the way mean another analysis, with a
+   larger matrix: there is no knowing how many will, so these are a guess. After an error 0. */
+GPROJI_INTERNAL size_t gproji_foretell(const gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    size_t more = 0, all;
+    if (!gproji_compile_rows(s, loop->options.nearest)) {
+        gproji_fail_compile(s);
+        return 0;
+    }
+    s->own.foretold = s->cholesky->own.foretold = &more;
+    gproji_take_compiled_arrays(s);
+    gproji_cholesky_take_numeric(s->cholesky);
+    if (loop->options.nearest && !s->vector.sum) gproji_start_multipliers(s);
+    s->own.foretold = s->cholesky->own.foretold = NULL;
+    gproji_error_clear(&s->cholesky->error);
+    /* Rows come in where dormant ones have no multipliers, and where corners are kept. */
+    all = gproji_add_bytes(gproj_system_memory(s).used, more);
+    return gproji_add_bytes(more, all / (s->schur.on || loop->options.smooth ? 4 : 32));
+}
+
 /* Runs for `seconds` (< 0: to the end), at least one iteration. Returns whether the solve is at its end; the result
    says how it stands. */
 GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
@@ -12639,11 +12718,6 @@ GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g)
 
 /* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
-/* 3 * vertices and 2 * (corners of all faces) must be int32_t. */
-enum {
-    GPROJI_VERTICES_MAX = INT32_MAX / 3 - 1,
-    GPROJI_CORNERS_MAX = INT32_MAX / 2 - 1
-};
 
 /* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
@@ -13797,7 +13871,7 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
 /* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
     if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
-    if (ints->count < GPROJI_INTS_MAX)
+    if (ints->count < (size_t)GPROJI_INTS_MAX)
         reader->code = gproji_fail_memory(reader->error);
     else
         gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "the text has too many elements; split the mesh");
@@ -14803,7 +14877,7 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     for (level = 1; !code && level <= options->levels; ++level) {
         gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
         if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > INT32_MAX) {
+            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX) {
             code = gproji_fail(
                 error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                 "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
@@ -15741,9 +15815,9 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the edit would have more than %d vertices or %d edges; go on with gproj_edit_mesh",
                            (int32_t)GPROJI_VERTICES_MAX, (int32_t)GPROJI_CORNERS_MAX / 2);
-    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > INT32_MAX / 2)
+    if (s->count[GPROJI_EDIT_POLYLINE_VERTEX] + polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX / 2)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the polylines would have more than %d vertices", (int32_t)INT32_MAX / 2);
+                           "the polylines would have more than %d vertices", (int32_t)GPROJI_POLYLINE_VERTICES_MAX / 2);
     for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
         int32_t needed = s->count[kind] + (int32_t)more[kind], old = s->room[kind], room;
         size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
@@ -23993,6 +24067,24 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
 }
 
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
+
+GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error) {
+    size_t more;
+    gproji_error_clear(error);
+    if (form && !gproji_form_ready(form)) {
+        gproji_pass_on(error, gproj_form_error(form));
+        return 0;
+    }
+    if (!gproj_solve_is_on(form) || gproji_is_solving(form->system)) {
+        gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                    "solve memory: ask between gproj_solve_begin and the end of that solve, not in a callback");
+        return 0;
+    }
+    more = gproji_foretell(&form->solve.loop);
+    if (gproji_form_ready(form)) return gproji_add_bytes(gproj_form_memory(form).used, more);
+    gproji_pass_on(error, gproj_form_error(form));
+    return 0;
+}
 
 GPROJ_API void gproj_solve_stop(gproj_form *form) {
     if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;

@@ -269,6 +269,7 @@ static void gprojt_frames(gprojt_life *c) {
             GPROJT_MUST(wrong || c->drag || gproj_form_error(c->form)->code != GPROJ_OK);
         break;
     case 1: gproj_solve_stop(c->form); break;
+    case 2: gproj_solve_memory(c->form, NULL); /* fall through */
     default:
         result = gproj_solve_advance(c->form, gprojt_byte(c) % 4 * 5 - (c->wrong ? 5 : 0));
         if (result.outcome == GPROJ_FAILED) GPROJT_MUST(!gproj_solve_is_on(c->form));

@@ -130,7 +130,8 @@ typedef struct gprojt_failing {
     long held;  /* blocks not yet given back */
     long calls; /* allocations and reallocations so far */
     long fail_at;
-    size_t bytes;    /* held */
+    size_t bytes;    /* held, */
+    size_t peak;     /* and the most that were */
     int wrong_sizes; /* releases with another size than the block was taken with */
 } gprojt_failing;
 
@@ -143,6 +144,7 @@ static inline void *gprojt_failing_allocate(void *user, size_t size) {
     block[0] = size;
     f->held++;
     f->bytes += size;
+    if (f->bytes > f->peak) f->peak = f->bytes;
     return (char *)block + 16;
 }
 static inline void gprojt_failing_release(void *user, void *block, size_t size) {

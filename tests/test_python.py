@@ -674,7 +674,11 @@ def test_frames_and_states():
     raises(Error, frames.solve_begin, 20, tolerance=-1.0, code=Code.ERROR_ARGUMENT)
     frames.solve_begin(20, lambda iteration: 1 // 0)
     raises(ZeroDivisionError, frames.solve_advance)
+    raises(Error, frames.solve_memory, code=Code.ERROR_STATE)
     frames.solve_begin(20)
+    told = frames.solve_memory()
+    frames.solve_advance()
+    check(0.7 * told <= frames.memory.peak <= told, (told, frames.memory.peak))
     frames.solve_stop()
     check(not frames.solve_is_on, "stopped")
 

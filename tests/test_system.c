@@ -266,7 +266,7 @@ static const gprojt_refusal gprojt_refusals[GPROJT_CALLS] = {
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "blocks of 9"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "7 variables in blocks of 3"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-3 variables"},
-    {GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more variables"},
+    {GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "more than 1073741823 variables"},
     {GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, 7, "variable 7 is not a finite number"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, 1, "needs a name"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, 1, "needs a name"},

@@ -289,6 +289,7 @@ group_info form_group_info(pointer, int32)
 bool form_is_corner(pointer, int32)
 result solve(pointer, int32, pointer)
 bool solve_begin(pointer, int32, pointer, pointer)
+size solve_memory(pointer, pointer)
 bool solve_is_on(pointer)
 result solve_advance(pointer, double)
 void solve_stop(pointer)
@@ -1578,6 +1579,14 @@ class Form(_Sticky):
         with _interruptible():
             result = _lib().gproj_solve_advance(self._c, seconds)
         return self._verdict(result)
+
+    def solve_memory(self):
+        """The bytes that the solve that was begun will hold at most, before it takes them (gproj_solve_memory)."""
+        error = _Error()
+        told = _lib().gproj_solve_memory(self._c, byref(error))
+        if not told:
+            raise _failure(error)
+        return told
 
     def solve_stop(self):
         """Ends a solve in frames at the present positions."""
