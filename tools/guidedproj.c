@@ -1015,7 +1015,7 @@ static bool subdivide(tool *t) {
         return fail_library(t, t->input, &error);
     for (level = 0; level <= last; ++level) {
         gproj_mesh *coarse = t->mesh;
-        if (pulled && !gprojx_problem_pull(&t->problem, coarse, level, &error)) return fail_problem(t, &error);
+        if (pulled && !gprojx_move_handles(&t->problem, coarse, level, &error)) return fail_problem(t, &error);
         if (level == last) break;
         t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
         gproj_mesh_destroy(coarse);
@@ -2393,7 +2393,9 @@ static bool pull(tool *t) {
          item = gprojx_after(&t->problem, item)) {
         good = take_hold(t, item, "pulls", &hold);
         hold.handles.position = here;
+        t->line = item->line;
         good = good && drag_to(t, &hold.handles, hold.by);
+        t->line = 0;
         gproj_stencil_destroy(hold.followers);
     }
     return good;

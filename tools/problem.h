@@ -1,8 +1,8 @@
 /* problem.h - reads a problem file: what the command line says and more, as JSON.
 
    From top to bottom: strict JSON with the line of each value; what the sections of a problem may hold; lists of vertices,
-   edges and faces; builders, which add a section to a form; handles. Errors say line and key: `12: "rollers": ...`, to stand
-   behind the file's name and a colon. Include guidedproj.h before this file. */
+   edges and faces; builders, which add a section to a form; handles. Errors say line and key: `12: "rollers": ...`, to
+   stand behind the file's name and a colon. Include guidedproj.h before this file. */
 #ifndef GPROJX_PROBLEM_H
 #define GPROJX_PROBLEM_H
 
@@ -760,7 +760,7 @@ static bool gprojx_build_row(gprojx_problem *p, const gprojx_value *item, int32_
     return true;
 }
 
-/* Adds rows of quadratic terms: one for each vertex, or a single one. */
+/* Adds rows of quadratic terms: one for each vertex, or a single one. See gproj_form_add_row. */
 static bool gprojx_build_rows(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error) {
     const gprojx_value *unknowns = gprojx_member(p, item, "unknowns"), *kind = gprojx_member(p, item, "kind"), *v;
     bool placed = gprojx_member(p, item, "vertices") != NULL, good = true;
@@ -773,6 +773,7 @@ static bool gprojx_build_rows(gprojx_problem *p, const gprojx_value *item, doubl
         int32_t number = gproj_form_add_unknowns(p->form, group, GPROJ_UNIT_LENGTH, 1, &v->number, NULL, NULL);
         if (unknown < 0) unknown = number;
     }
+    if (unknowns && unknown < 0) return true; /* the form says why */
     term = (gproj_term *)malloc((size_t)gprojx_member(p, item, "terms")->count * sizeof *term);
     if (!term) return gprojx_refuse(error, GPROJ_ERROR_MEMORY, "out of memory");
     for (i = 0; good && i < count; ++i)
@@ -882,7 +883,7 @@ static bool gprojx_check_handle(const gprojx_problem *p, const gprojx_value *ite
 }
 
 /* Moves vertices of a mesh after `level` subdivisions by the handles of this level. */
-static bool gprojx_problem_pull(const gprojx_problem *p, gproj_mesh *mesh, int32_t level, gproj_error *error) {
+static bool gprojx_move_handles(const gprojx_problem *p, gproj_mesh *mesh, int32_t level, gproj_error *error) {
     const gprojx_value *array = gprojx_member(p, p->value, "handles"), *item;
     int k;
     for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(p, item)) {
