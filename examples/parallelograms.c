@@ -72,7 +72,7 @@ static bool shape(gproj_mesh *mesh, double parallelograms, const char *path) {
     gproj_add_fixed(form, FEET, feet, 1);
     gproj_add_closeness(form, 0.02);
     gproj_add_fairness(form, 0.05);
-    if (parallelograms > 0) gproj_add_parallelograms(form, parallelograms);
+    gproj_add_parallelograms(form, parallelograms);
     result = gproj_solve(form, 24, NULL);
     gproj_mesh_save(mesh, path, NULL);
     gproj_form_destroy(form);

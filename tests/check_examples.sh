@@ -57,8 +57,8 @@ while read -r name output problem options; do
     [ -f "$root/examples/$name.c" ] && pass || fail "steps.txt: there is no example $name"
     [ "$problem" = - ] && { [ -n "$options" ] && pass || fail "steps.txt: $name $output - needs a reason"; continue; }
     # shellcheck disable=SC2086
-    clean "$problem.json $options" "$(cd "$work/again" && "$work/tool" --problem "$root/examples/problems/$problem.json" $options -o "$output" --quiet 2>&1 |
-        grep -v '^iteration')"
+    clean "$problem.json $options" "$(cd "$work/again" &&
+        "$work/tool" --problem "$root/examples/problems/$problem.json" $options -o "$output" --quiet 2>&1 || echo "exit code $?")"
 done < <(grep -v '^#' "$steps")
 for source in "$root"/examples/*.c; do
     name=$(basename "$source" .c)

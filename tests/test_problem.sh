@@ -166,6 +166,12 @@ END {
 END
 awk -f sphere.awk all.obj && ! awk -f sphere.awk roof.obj && pass || fail 'rows with unknowns do not hold'
 
+printf '{"input": "roof.obj", "planar": true, "fix": "corners", "nearest": true, "closeness": 0, "rows": [{"vertices": [24], "terms": [[1, "z"]],
+    "constant": -2, "kind": "wish"}]}' >wish.json
+"$tool" --problem wish.json -o all.obj --quiet >out.txt 2>&1
+[ $? -le 1 ] && pass || fail "a wish of rows is not one: $(cat out.txt)"
+holds 'a wish of rows' 'abs(z[24] - 2) < 0.01'
+
 # ---- pulls ----
 
 cat >pulls.json <<'END'

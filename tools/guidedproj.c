@@ -1891,7 +1891,12 @@ static bool anything_asked(const tool *t) {
 }
 
 static bool anything_wished(tool *t) {
+    const gprojx_value *rows = problem_section(t, "rows"), *item, *kind;
     int i;
+    for (item = rows ? gprojx_inside(rows) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        kind = gprojx_member(&t->problem, item, "kind");
+        if (kind && gprojx_find_kind(kind->text) == GPROJ_WISH) return true;
+    }
     for (i = 0; i < OPTION_COUNT; ++i)
         if (t->seen[i] && options[i].kind == SOFT && ((tool_demand *)place_of(t, i))->weight > 0) return true;
     return false;
