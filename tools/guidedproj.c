@@ -155,7 +155,8 @@ typedef struct tool {
     gproj_host host;
     gprojx_threads *pool;
     gproj_mesh *mesh, *reference_mesh;
-    gproj_mesh *cage_mesh; /* whose vertices are handles of the mesh; NULL: no handle needs it */
+    gproj_mesh *cage_mesh;                 /* whose vertices are handles of the mesh; NULL: no handle needs it */
+    gproj_stencil *followers[MOST_LEVELS]; /* by level of the cage, see find_followers; NULL: not needed yet */
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
     gprojx_panels *panels;
@@ -913,47 +914,46 @@ static const gprojx_value *problem_section(const tool *t, const char *key) {
     return t->problem.count > 0 ? gprojx_member(&t->problem, t->problem.value, key) : NULL;
 }
 
-/* Finds the followers of the vertices of a level of the cage: a row for each, with its weights in the mesh. */
-static gproj_stencil *find_followers(tool *t, int32_t level) {
+/* Finds the followers of the vertices of a level of the cage, once: a row for each, with its weights in the mesh. */
+static const gproj_stencil *find_followers(tool *t, int32_t level) {
     const gproj_subdivide_options options = {
         .levels = t->subdivision.levels, .scheme = t->subdivision.scheme, .stencil_level = level};
     gproj_error error;
-    gproj_stencil *stencil = NULL, *followers = NULL;
-    gproj_mesh *mesh = gproj_mesh_subdivide(t->cage_mesh, &options, &stencil, &t->host, &error);
-    if (mesh) followers = gproj_stencil_transpose(stencil, &t->host, &error);
-    if (!followers) fail_library(t, t->cage ? t->cage : t->input, &error);
+    gproj_stencil *stencil = NULL;
+    gproj_mesh *mesh;
+    if (t->followers[level]) return t->followers[level];
+    mesh = gproj_mesh_subdivide(t->cage_mesh, &options, &stencil, &t->host, &error);
+    if (mesh) t->followers[level] = gproj_stencil_transpose(stencil, &t->host, &error);
+    if (!t->followers[level]) fail_library(t, t->cage ? t->cage : t->input, &error);
     gproj_stencil_destroy(stencil);
     gproj_mesh_destroy(mesh);
-    return followers;
+    return t->followers[level];
 }
 
-typedef struct tool_hold {    /* on a vertex of the cage, of a level between, or of the mesh */
-    gproj_stencil *followers; /* of all vertices of its level; NULL: a vertex of the mesh, alone */
+typedef struct tool_hold { /* on a vertex of the cage, of a level between, or of the mesh */
     int32_t vertex;
     int64_t start[2];
-    gproj_handles handles; /* one, with the followers of this vertex; points into the above */
+    gproj_handles handles; /* one, with the followers of this vertex, or with itself; points into the above */
     double by[3];
 } tool_hold;
 
-/* Takes hold of the vertex of an item of "handles" or "pulls". The followers are the caller's, also after a failure. */
+/* Takes hold of the vertex of an item of "handles" or "pulls". */
 static bool take_hold(tool *t, const gprojx_value *item, const char *section, tool_hold *hold) {
     const gprojx_handle handle = gprojx_read_handle(&t->problem, item);
-    int32_t vertices = t->mesh->vertex_count;
+    const gproj_stencil *followers = NULL;
     gproj_error error;
     memset(hold, 0, sizeof *hold);
     memcpy(hold->by, handle.by, sizeof hold->by);
     hold->vertex = handle.vertex;
     hold->start[1] = 1;
     hold->handles.count = 1, hold->handles.start = hold->start, hold->handles.vertex = &hold->vertex;
-    if (handle.level < t->subdivision.levels) {
-        hold->followers = find_followers(t, handle.level);
-        if (!hold->followers) return false;
-        vertices = hold->followers->row_count;
-    }
-    if (!gprojx_check_handle(&t->problem, item, section, vertices, &error)) return fail_problem(t, &error);
-    if (!hold->followers) return true;
-    memcpy(hold->start, hold->followers->start + handle.vertex, sizeof hold->start);
-    hold->handles.vertex = hold->followers->column, hold->handles.weight = hold->followers->weight;
+    if (handle.level < t->subdivision.levels && !(followers = find_followers(t, handle.level))) return false;
+    if (!gprojx_check_handle(&t->problem, item, section, followers ? followers->row_count : t->mesh->vertex_count,
+                             &error))
+        return fail_problem(t, &error);
+    if (!followers) return true;
+    memcpy(hold->start, followers->start + handle.vertex, sizeof hold->start);
+    hold->handles.vertex = followers->column, hold->handles.weight = followers->weight;
     return true;
 }
 
@@ -961,30 +961,25 @@ static bool take_hold(tool *t, const gprojx_value *item, const char *section, to
 static bool check_pulls(tool *t) {
     const gprojx_value *array = problem_section(t, "pulls"), *item;
     tool_hold hold;
-    bool good = true;
-    for (item = array ? gprojx_inside(array) : NULL; item && good; item = gprojx_after(&t->problem, item)) {
-        good = take_hold(t, item, "pulls", &hold);
-        gproj_stencil_destroy(hold.followers);
-    }
-    return good;
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item))
+        if (!take_hold(t, item, "pulls", &hold)) return false;
+    return true;
 }
 
 /* Moves the mesh by the handles of its cage. */
 static bool follow_handles(tool *t) {
     const gprojx_value *array = problem_section(t, "handles"), *item;
     tool_hold hold;
-    bool good = true;
     int64_t k;
     int c;
-    for (item = array ? gprojx_inside(array) : NULL; item && good; item = gprojx_after(&t->problem, item)) {
-        good = take_hold(t, item, "handles", &hold);
-        for (k = hold.start[0]; good && k < hold.start[1]; ++k) {
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        if (!take_hold(t, item, "handles", &hold)) return false;
+        for (k = hold.start[0]; k < hold.start[1]; ++k) {
             double *p = t->mesh->position + 3 * (size_t)hold.handles.vertex[k];
             for (c = 0; c < 3; ++c) p[c] += (hold.handles.weight ? hold.handles.weight[k] : 1) * hold.by[c];
         }
-        gproj_stencil_destroy(hold.followers);
     }
-    return good;
+    return true;
 }
 
 /* Reads the cage that the input came of, and moves the input by its handles. */
@@ -2393,17 +2388,14 @@ static bool pull(tool *t) {
     static const double here[3] = {0, 0, 0}; /* so that a place is a displacement */
     const gprojx_value *array = problem_section(t, "pulls"), *item;
     tool_hold hold;
-    bool good = true;
-    for (item = array ? gprojx_inside(array) : NULL; item && good && is_exact(t);
-         item = gprojx_after(&t->problem, item)) {
-        good = take_hold(t, item, "pulls", &hold);
+    for (item = array ? gprojx_inside(array) : NULL; item && is_exact(t); item = gprojx_after(&t->problem, item)) {
+        if (!take_hold(t, item, "pulls", &hold)) return false;
         hold.handles.position = here;
         t->line = item->line;
-        good = good && drag_to(t, &hold.handles, hold.by);
+        if (!drag_to(t, &hold.handles, hold.by)) return false;
         t->line = 0;
-        gproj_stencil_destroy(hold.followers);
     }
-    return good;
+    return true;
 }
 
 /* Goes on from the state in the file of --state, if there is one. */
@@ -2851,6 +2843,7 @@ static void clean_up(tool *t) {
     gprojx_panels_destroy(t->panels);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
     gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->cage_mesh), gproj_mesh_destroy(t->mesh);
+    for (i = 0; i < MOST_LEVELS; ++i) gproj_stencil_destroy(t->followers[i]);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
