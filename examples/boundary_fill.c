@@ -3,7 +3,8 @@
 
    A smooth closed curve on the ground is filled with quads three times: it makes a difference which of its points are
    taken as corners. One vertex of each mesh is then pulled up: an auxiliary projection, in which only fairness guides
-   the others. At last all panels become planar. Writes boundary_fill_a.obj (3 corners), _b.obj (4) and _c.obj (5).
+   the others. At last all panels become planar. Writes boundary_fill_a.obj (3 corners), _b.obj (4) and _c.obj (5), and
+   the flat meshes, boundary_fill_a_start.obj, _b_ and _c_.
 
    Build and run:   cc -O2 boundary_fill.c -lm -o boundary_fill && ./boundary_fill
    Prints:          what each mesh is like, how planar its panels are, and how far the three shapes are apart */
@@ -44,10 +45,10 @@ static gproj_result lift(gproj_mesh *mesh, double height) {
     for (i = 1; i < mesh->vertex_count; ++i)
         if (hypot(p[3 * i], p[3 * i + 1]) < hypot(p[3 * nearest], p[3 * nearest + 1])) nearest = i;
     target[0] = p[3 * nearest], target[1] = p[3 * nearest + 1], target[2] = height;
-    gproj_add_targets(form, 1, &nearest, target, 1);
     gproj_add_fixed_boundary(form, 1);
-    gproj_add_fairness(form, 0.3);
+    gproj_add_targets(form, 1, &nearest, target, 1);
     gproj_add_closeness(form, 0.01);
+    gproj_add_fairness(form, 0.3);
     result = gproj_solve(form, 10, NULL);
     gproj_form_destroy(form);
     return result;
@@ -60,8 +61,8 @@ static gproj_result make_planar(gproj_mesh *mesh) {
     gproj_result result;
     gproj_add_planarity(form, 1);
     gproj_add_gliding_boundary(form, 1);
-    gproj_add_fairness(form, 0.3);
     gproj_add_closeness(form, 0.05);
+    gproj_add_fairness(form, 0.3);
     options.nearest = true;
     result = gproj_solve(form, 60, &options);
     gproj_form_destroy(form);
@@ -82,6 +83,8 @@ int main(void) {
     static const int32_t three[] = {60, 180, 300}, four[] = {0, 90, 180, 270}, five[] = {0, 72, 144, 216, 288};
     static const int32_t *const corner[SHAPES] = {three, four, five};
     static const char *const name[SHAPES] = {"boundary_fill_a.obj", "boundary_fill_b.obj", "boundary_fill_c.obj"};
+    static const char *const start[SHAPES] = {"boundary_fill_a_start.obj", "boundary_fill_b_start.obj",
+                                              "boundary_fill_c_start.obj"};
     gproj_mesh *mesh[SHAPES];
     gproj_error error;
     int32_t k, i;
@@ -96,6 +99,7 @@ int main(void) {
         printf("%d corners: %d quads, %d of %d inner vertices irregular, angles %.0f to %.0f degrees\n", (int)(3 + k),
                (int)mesh[k]->face_count, (int)info.irregular_count,
                (int)(mesh[k]->vertex_count - info.boundary_count), info.min_angle, info.max_angle);
+        gproj_mesh_save(mesh[k], start[k], NULL);
         lifted = lift(mesh[k], 5);
         result = make_planar(mesh[k]);
         if (lifted.outcome != GPROJ_CONVERGED) puts(lifted.message);

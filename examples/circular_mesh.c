@@ -2,8 +2,8 @@
 
    A funnel of revolution, bent by an inversion in a sphere, which turns circles into circles, and then dented by wind.
    Made planar and circular again, it has a parallel mesh whose nodes are all at the same distance from the nodes below, so
-   that all the struts between them have one length, and the panels between the layers are flat. Writes circular_mesh.obj,
-   circular_offset.obj and circular_support.obj, one quad a panel.
+   that all the struts between them have one length, and the panels between the layers are flat. Writes
+   circular_start.obj, circular_mesh.obj, circular_offset.obj and circular_support.obj, one quad a panel.
 
    Build and run:   cc -O2 circular_mesh.c -lm -o circular_mesh && ./circular_mesh
    Prints:          what holds, and how exactly the layers are parallel */
@@ -51,10 +51,11 @@ int main(void) {
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_offset_measures between;
     gproj_result result;
+    gproj_mesh_save(mesh, "circular_start.obj", NULL);
     gproj_add_planarity(form, 1);
     gproj_add_circularity(form, 1);
-    gproj_add_fairness(form, 0.02);
     gproj_add_closeness(form, 0.03);
+    gproj_add_fairness(form, 0.02);
     result = gproj_solve(form, 12, NULL);
     offset = gproj_mesh_vertex_offset(mesh, distance, NULL, &error);
     support = gproj_mesh_support(mesh, offset, NULL, &error);

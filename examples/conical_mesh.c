@@ -3,8 +3,8 @@
 
    A vaulted hall follows a bent street; its surface is rippled, so its quads are warped. Made planar and conical, it has a
    parallel mesh: every panel of it is at the same distance from its panel below, for glass of constant thickness. The
-   beams between the two layers are flat and meet in the axes of the nodes. Writes conical_mesh.obj, conical_offset.obj
-   and conical_support.obj, one quad a beam.
+   beams between the two layers are flat and meet in the axes of the nodes. Writes conical_start.obj, conical_mesh.obj,
+   conical_offset.obj and conical_support.obj, one quad a beam.
 
    Build and run:   cc -O2 conical_mesh.c -lm -o conical_mesh && ./conical_mesh
    Prints:          what holds, and how exactly the layers are parallel */
@@ -44,10 +44,11 @@ int main(void) {
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_offset_measures between;
     gproj_result result;
+    gproj_mesh_save(mesh, "conical_start.obj", NULL);
     gproj_add_planarity(form, 1);
     gproj_add_conicality(form, 1);
-    gproj_add_fairness(form, 0.01);
     gproj_add_closeness(form, 0.03);
+    gproj_add_fairness(form, 0.01);
     result = gproj_solve(form, 12, NULL);
     offset = gproj_mesh_face_offset(mesh, distance, NULL, &error);
     support = gproj_mesh_support(mesh, offset, NULL, &error);

@@ -4,7 +4,7 @@
    the wish that opposite edges of a panel carry the same force, (c) with 20 % more volume, but no edge longer and no
    panel larger than in (a). Diagonals meet the walls: edges along straight walls would force whole strips of panels
    into one plane. As many panels along as across: then the lines of the net, reflected at the walls, close. Writes
-   courtyard_a.obj, _b, _c and .svg (edges by their force).
+   courtyard_start.obj, and courtyard_a.obj, _b, _c and .svg (edges by their force).
 
    Build and run:   cc -O2 courtyard.c -lm -o courtyard && ./courtyard
    Prints:          the forces of (a) and (b), volume and bounds of (c) */
@@ -63,7 +63,7 @@ static bool design(roof *r, double volume, double force_fairness, const roof *li
     gproj_result result;
     int32_t v;
     r->mesh = make_dome(&error);
-    if (!r->mesh) return puts(error.message), false;
+    if (!r->mesh || gproj_mesh_save(r->mesh, "courtyard_start.obj", &error)) return puts(error.message), false;
     form = gproj_form_create(r->mesh, NULL);
     for (v = 0; v < r->mesh->vertex_count; ++v)
         if (gproj_mesh_is_boundary_vertex(r->mesh, v)) support[supports.count++] = v;
@@ -71,15 +71,15 @@ static bool design(roof *r, double volume, double force_fairness, const roof *li
     gproj_add_planarity(form, 1);
     gproj_add_equilibrium(form, &loads, &supports, 1);
     gproj_add_compression(form, r->mesh->edge_count, NULL, 1);
-    gproj_add_gliding_boundary(form, 1);
-    gproj_add_volume(form, volume, 1);
-    gproj_add_fairness(form, 0.02);
-    gproj_add_closeness(form, 0.02);
     if (force_fairness > 0) gproj_add_force_fairness(form, force_fairness);
     if (like) {
         gproj_add_length_bounds(form, r->mesh->edge_count, NULL, 0, like->measures.max_edge, 1);
         gproj_add_area_bounds(form, r->mesh->face_count, NULL, 0, like->measures.max_face_area, 1);
     }
+    gproj_add_volume(form, volume, 1);
+    gproj_add_gliding_boundary(form, 1);
+    gproj_add_closeness(form, 0.02);
+    gproj_add_fairness(form, 0.02);
     result = gproj_solve(form, 24, NULL);
     r->forces = gproj_measure_forces(form, NULL);
     r->measures = gproj_measure(r->mesh, NULL, NULL);

@@ -4,7 +4,8 @@
        (v - c)'(v - c) - r^2 = 0,
    which is quadratic, so it can be written down as terms a x_i x_j, b x_i and a constant, in the mesh's units. r may be
    an unknown of its own, too. Together with planar faces it gives a dome of flat quads inscribed in a sphere, of the
-   radius that suits it: such faces have a circumcircle, too.
+   radius that suits it: such faces have a circumcircle, too. Writes custom_constraint_start.obj and
+   custom_constraint.obj.
 
    Build and run:   cc -O2 custom_constraint.c -lm -o custom_constraint && ./custom_constraint
    Prints:          the radius, how far the vertices are from the sphere and the faces from planes, and the gradient check */
@@ -59,6 +60,7 @@ int main(void) {
     gproj_result result;
     double worst = 0;
     int32_t v, unknown;
+    gproj_mesh_save(mesh, "custom_constraint_start.obj", NULL);
     gproj_add_planarity(form, 1);
     unknown = add_sphere(form, mesh ? mesh->vertex_count : 0, centre, radius);
     printf("gradients right   %s\n", gproj_system_check_gradients(gproj_form_system(form)) < 1e-7 ? "yes" : "no");
@@ -76,6 +78,7 @@ int main(void) {
     printf("its radius        %.2f\n", radius);
     printf("vertices on it    %s\n", worst < 1e-11 ? "to 1e-11" : "no");
     printf("faces planar      %s\n", gproj_measure(mesh, NULL, NULL).planarity_max < 1e-12 ? "to 1e-12" : "no");
+    gproj_mesh_save(mesh, "custom_constraint.obj", NULL);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     return 0;

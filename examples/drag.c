@@ -2,7 +2,7 @@
 
    Planarises a roof of 3,364 quads, takes hold of a vertex, and moves it by up to half an edge. The error of the panels
    grows with the square of the way only; the release takes it away. Then a point of a coarse cage is moved, which takes a
-   whole region along. Writes drag_before.obj, drag_vertex.obj and drag_cage.obj.
+   whole region along. Writes drag_start.obj, drag_before.obj (flat panels), drag_vertex.obj and drag_cage.obj.
 
    Build and run:   cc -O2 drag.c -lm -o drag && ./drag          (./drag time: what a begin and the moves cost)
    Prints:          for each move its length, the largest error, and the error over the squared length */
@@ -77,6 +77,7 @@ int main(int count, char **argument) { /* any argument: times, too */
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     gproj_result result;
 
+    gproj_mesh_save(mesh, "drag_start.obj", NULL);
     gproj_add_planarity(form, 1);
     gproj_add_fixed_corners(form, 1);
     gproj_add_fairness(form, 0.01);

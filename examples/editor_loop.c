@@ -2,7 +2,7 @@
 
    What a plug-in or a game editor does with the library, without its graphics: a solve that goes on a few milliseconds a
    frame, a drag that follows the mouse, escape, undo and redo. Events come from a script. What they lead to does not
-   depend on how long frames are.
+   depend on how long frames are. Writes editor_start.obj and editor_loop.obj.
 
    Build and run:   cc -O2 editor_loop.c -lm -o editor_loop && ./editor_loop
    Prints:          a line for each event, and where it has led to */
@@ -92,6 +92,7 @@ int main(void) {
     const char *const *next = script;
     e.mesh = make_grid(SIDE, SIDE, roof, NULL);
     e.form = gproj_form_create(e.mesh, &host);
+    gproj_mesh_save(e.mesh, "editor_start.obj", NULL);
     gproj_add_planarity(e.form, 1);
     gproj_add_fixed_corners(e.form, 1);
     gproj_add_fairness(e.form, 0.05);
@@ -105,6 +106,7 @@ int main(void) {
                gproj_measure(e.mesh, NULL, NULL).planarity_max < 1e-12 ? "exact" : "not exact");
         /* here the editor draws the mesh */
     }
+    gproj_mesh_save(e.mesh, "editor_loop.obj", NULL);
     for (i = 1; i < STATES; ++i) free(e.state[i]);
     gproj_form_destroy(e.form);
     gproj_mesh_destroy(e.mesh);

@@ -2,7 +2,7 @@
 
    An oval dome of hexagons with an opening at its top. It is solved twice, with planar panels, the boundaries on their
    curves and the dome near its shape: without and with the wish that all panels have one area. Writes
-   equal_areas_without.obj and equal_areas.obj.
+   equal_areas_start.obj, equal_areas_without.obj and equal_areas.obj.
 
    Build and run:   cc -O2 equal_areas.c -lm -o equal_areas && ./equal_areas
    Prints:          the spread of the areas (standard deviation over mean) without and with the wish */
@@ -58,9 +58,9 @@ static gproj_measures shape(const gproj_mesh *original, double equal_areas, cons
     gproj_add_planarity(form, 1);
     gproj_add_gliding_boundary(form, 1);
     gproj_add_reference(form, surface, 0.1);
-    gproj_add_tangential_fairness(form, 0.05);
     gproj_add_boundary_fairness(form, 0.05);
-    gproj_add_equal_areas(form, equal_areas);
+    gproj_add_tangential_fairness(form, 0.05);
+    if (equal_areas > 0) gproj_add_equal_areas(form, equal_areas);
     result = gproj_solve(form, 30, NULL);
     measures = gproj_measure(mesh, original->position, NULL);
     if (result.outcome != GPROJ_CONVERGED) printf("not done: %s\n", result.message);
@@ -76,6 +76,7 @@ int main(void) {
     gproj_mesh *mesh = make_dome(&error);
     gproj_measures without, with;
     if (!mesh) return puts(error.message), 1;
+    gproj_mesh_save(mesh, "equal_areas_start.obj", NULL);
     without = shape(mesh, 0, "equal_areas_without.obj");
     with = shape(mesh, 0.2, "equal_areas.obj");
     printf("panels planar        %s\n",

@@ -2,7 +2,7 @@
 
    A flat mesh of quads fills a curve on the ground. It is lifted: every vertex rises above its place until the net
    stands by compression alone. Then it moves freely, its panels become planar, and its edges meet the ground at right
-   angles; tangential fairness guides with the paper's weight. Writes greenhouse.obj and .svg.
+   angles; tangential fairness guides with the paper's weight. Writes greenhouse_start.obj, greenhouse.obj and .svg.
 
    Build and run:   cc -O2 greenhouse.c -lm -o greenhouse && ./greenhouse
    Prints:          does it stand, are panels planar and angles right, and how steep it is at the ground: there a smooth
@@ -35,11 +35,10 @@ static gproj_mesh *make_flat(gproj_error *error) {
 }
 
 /* What both steps share: load by the area of panels, supports on the ground, compression alone. */
-static gproj_form *stand(gproj_mesh *mesh, const double *density) {
+static void stand(gproj_form *form, const gproj_mesh *mesh, const double *density) {
     static int32_t support[AROUND];
     gproj_loads loads = {0};
     gproj_supports supports = {AROUND, support, NULL};
-    gproj_form *form = gproj_form_create(mesh, NULL);
     int32_t j;
     for (j = 0; j < AROUND; ++j) support[j] = j; /* the boundary comes first */
     loads.area_load = 1;
@@ -47,7 +46,6 @@ static gproj_form *stand(gproj_mesh *mesh, const double *density) {
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_add_gliding_boundary(form, 1);
     gproj_set_forces(form, density, NULL);
-    return form;
 }
 
 int main(void) {
@@ -63,18 +61,21 @@ int main(void) {
     int32_t j, right;
     if (!mesh) return puts(error.message), 1;
     if (mesh->edge_count > EDGES) return 1;
+    gproj_mesh_save(mesh, "greenhouse_start.obj", NULL);
     for (j = 0; j < mesh->edge_count; ++j) density[j] = 3; /* equal forces: in plan, the flat mesh is in equilibrium */
-    form = stand(mesh, density);
+    form = gproj_form_create(mesh, NULL);
     gproj_add_lifting(form, 1);
+    stand(form, mesh, density);
     lift.skip_closeness = true;
     lift.tolerance = 1e-10, lift.epsilon = 1e-6; /* keeps it so: lifting and equilibrium in plan depend on each other */
     result = gproj_solve(form, 20, &lift);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
     gproj_get_forces(form, density, NULL);
     gproj_form_destroy(form);
-    form = stand(mesh, density);
+    form = gproj_form_create(mesh, NULL);
     gproj_add_planarity(form, 1);
     right = gproj_add_orthogonal_boundary(form, 1);
+    stand(form, mesh, density);
     gproj_set_schedule(form, gproj_add_tangential_fairness(form, 1), wish);
     result = gproj_solve(form, 40, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;

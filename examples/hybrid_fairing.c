@@ -2,8 +2,8 @@
 
    A roof of triangles and quads (a flying carpet) with planar panels that look restless: the normals jump from panel
    to panel. Keeping every panel planar, the boundary on its curve and the roof near its shape, the tangential fairness
-   of the mesh and of its Gauss image (the mesh of the normals) make it calm. Writes hybrid_fairing_before.obj and
-   hybrid_fairing.obj.
+   of the mesh and of its Gauss image (the mesh of the normals) make it calm. Writes hybrid_fairing_start.obj,
+   hybrid_fairing_before.obj (planar panels) and hybrid_fairing.obj.
 
    Build and run:   cc -O2 hybrid_fairing.c -lm -o hybrid_fairing && ./hybrid_fairing
    Prints:          how much the variation of the Gauss map fell */
@@ -59,9 +59,9 @@ static gproj_result shape(gproj_mesh *mesh, const gproj_surface *carpet, bool fa
     gproj_add_gliding_boundary(form, 1);
     if (fair) {
         gproj_add_reference(form, carpet, 0.1);
+        gproj_add_boundary_fairness(form, 0.1);
         gproj_add_tangential_fairness(form, 0.1);
         gproj_add_gauss_fairness(form, 0.3);
-        gproj_add_boundary_fairness(form, 0.1);
     }
     result = gproj_solve(form, 16, NULL);
     gproj_form_destroy(form);
@@ -72,8 +72,11 @@ int main(void) {
     gproj_error error;
     gproj_mesh *mesh = make_carpet(&error);
     gproj_surface *carpet = gproj_surface_create(mesh, NULL, &error);
-    gproj_result flat = shape(mesh, carpet, false), fair;
-    gproj_measures before = gproj_measure(mesh, NULL, NULL), after;
+    gproj_measures before, after;
+    gproj_result flat, fair;
+    gproj_mesh_save(mesh, "hybrid_fairing_start.obj", NULL);
+    flat = shape(mesh, carpet, false);
+    before = gproj_measure(mesh, NULL, NULL);
     gproj_mesh_save(mesh, "hybrid_fairing_before.obj", NULL);
     fair = shape(mesh, carpet, true);
     after = gproj_measure(mesh, NULL, NULL);

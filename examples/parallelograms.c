@@ -2,8 +2,8 @@
 
    A canopy of quads on five feet, smooth at first. It is solved twice, with planar panels, the feet in place and the
    canopy near its shape: without and with the wish that quads are parallelograms. With it, ribs emerge between the
-   five sectors: the combinatorics and the wanted shape of the panels make them. Writes parallelograms_without.obj and
-   parallelograms.obj.
+   five sectors: the combinatorics and the wanted shape of the panels make them. Writes parallelograms_start.obj,
+   parallelograms_without.obj and parallelograms.obj.
 
    Build and run:   cc -O2 parallelograms.c -lm -o parallelograms && ./parallelograms
    Prints:          the mean of |v1 - v2 + v3 - v4| over the panels, in mean edge lengths, without and with the wish */
@@ -84,6 +84,7 @@ int main(void) {
     gproj_mesh *mesh = make_canopy(&error), *other = mesh ? gproj_mesh_copy(mesh, NULL, &error) : NULL;
     gproj_measures measures;
     if (!mesh || !other) return puts(error.message), 1;
+    gproj_mesh_save(mesh, "parallelograms_start.obj", NULL);
     if (!shape(mesh, 0, "parallelograms_without.obj") || !shape(other, 2, "parallelograms.obj"))
         return puts("the panels do not become planar"), 1;
     measures = gproj_measure(other, NULL, NULL);

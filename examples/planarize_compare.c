@@ -3,7 +3,7 @@
    A roof of warped quads becomes planar by (A) this library: normals are variables, all equations quadratic; (B) the
    same steps without normals, on the cubic equations det(v2 - v1, v3 - v1, v4 - v1) = 0; (C) local-global projection
    [Bouaziz et al. 2012]: each panel goes to the plane midway between its diagonals, then all vertices at once as near
-   to the moved panels as they can, by a constant matrix. Writes the plot planarize_compare.svg.
+   to the moved panels as they can, by a constant matrix. Writes planarize_compare.svg (a plot), _start.obj, .obj (A).
 
    Build and run:   cc -O2 planarize_compare.c -lm -o planarize_compare && ./planarize_compare
    Prints:          after each iteration delta, the largest distance of a panel's diagonals over the mean edge length
@@ -55,14 +55,15 @@ static void guided_projection(const gproj_mesh *roof, bool cubic, gproj_measures
     for (steps = 0; steps <= STEPS; ++steps) {
         gproj_mesh *mesh = gproj_mesh_copy(roof, NULL, NULL);
         gproj_form *form = gproj_form_create(mesh, NULL);
-        gproj_set_schedule(form, gproj_add_closeness(form, 1), (gproj_schedule){0.03, 0.3, 5});
         number = cubic ? gproj_system_add_group(gproj_form_system(form), &group) : gproj_add_planarity(form, 1);
+        gproj_set_schedule(form, gproj_add_closeness(form, 1), (gproj_schedule){0.03, 0.3, 5});
         for (f = 0; cubic && f < QUADS; ++f) {
             gproj_term term[12];
             for (i = 0; i < 12; ++i) term[i].i = 3 * corner(f, i / 3) + i % 3, term[i].j = -1, term[i].a = 0;
             gproj_system_add_row(gproj_form_system(form), number, 12, term, 0, f);
         }
         if (steps > 0) gproj_solve(form, steps, NULL);
+        if (!cubic) gproj_mesh_save(mesh, steps == 0 ? "planarize_compare_start.obj" : "planarize_compare.obj", NULL);
         measures[steps] = gproj_measure(mesh, roof->position, NULL);
         gproj_form_destroy(form), gproj_mesh_destroy(mesh);
     }
@@ -80,8 +81,7 @@ static void local_global(const gproj_mesh *roof, gproj_measures *measures) {
         for (row[entries] = v, value[entries++] = 1e-6, f = 0; f < 4 * QUADS; ++f)
             for (k = 0; k < 4 && corner(f / 4, f % 4) == v; ++k)
                 if ((row[entries] = corner(f / 4, k)) >= v) value[entries++] = k == f % 4 ? 0.75 : -0.25;
-    gproj_cholesky_analyse(cholesky, POINTS, start, row, NULL);
-    gproj_cholesky_factor(cholesky, value);
+    gproj_cholesky_analyse(cholesky, POINTS, start, row, NULL), gproj_cholesky_factor(cholesky, value);
     for (steps = 0; steps <= STEPS; ++steps) {
         measures[steps] = gproj_measure(mesh, roof->position, NULL);
         for (k = 0; k < 3 * POINTS; ++k) move[k] = 0;

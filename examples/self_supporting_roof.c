@@ -4,7 +4,7 @@
    A canopy of quads on one flared foot, which overhangs its own foot: no height field. The boundary glides on its
    curves, foot and scalloped rim, and is supported there; panels become planar, edges carry the load of the panels
    through compression alone. Reference is the design, with the wishes and weights of the paper. Writes
-   self_supporting_roof.obj and .svg (edges by their force).
+   self_supporting_start.obj, self_supporting_roof.obj and .svg (edges by their force).
 
    Build and run:   cc -O2 self_supporting_roof.c -lm -o self_supporting_roof && ./self_supporting_roof
    Prints:          how planar, does it stand, how far the design moved */
@@ -43,6 +43,7 @@ int main(void) {
     gproj_result result;
     int32_t i;
     if (!mesh) return puts(error.message), 1;
+    gproj_mesh_save(mesh, "self_supporting_start.obj", NULL);
     for (i = 0; i < AROUND; ++i) support[i] = i, support[AROUND + i] = ALONG * AROUND + i;
     loads.area_load = 1;
     gproj_add_planarity(form, 1);
@@ -50,8 +51,8 @@ int main(void) {
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_add_gliding_boundary(form, 1);
     gproj_add_reference(form, design, 0.1);
-    gproj_add_equal_areas(form, 0.001);
     gproj_set_schedule(form, gproj_add_fairness(form, 1), fair);
+    gproj_add_equal_areas(form, 0.001);
     result = gproj_solve(form, 24, NULL);
     if (result.outcome != GPROJ_CONVERGED) return puts(result.message), 1;
     forces = gproj_measure_forces(form, NULL);

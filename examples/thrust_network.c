@@ -3,7 +3,8 @@
 
    A horn of triangles rises from a ring on the ground and bends over to an upright mouth, so that its underside
    overhangs. Its edges carry a load by face area through compression alone, between two rings of supports. Fairness
-   and tangential fairness guide with the paper's weights. Writes thrust_network.obj and .svg (edges by their force).
+   and tangential fairness guide with the paper's weights. Writes thrust_start.obj, thrust_network.obj and .svg (edges
+   by their force).
 
    Build and run:   cc -O2 thrust_network.c -lm -o thrust_network && ./thrust_network
    Prints:          does every vertex stand, is every edge compressed, how much of the horn looks down */
@@ -60,12 +61,13 @@ int main(void) {
     double area = 0, down = 0;
     int32_t i;
     if (!mesh) return puts(error.message), 1;
+    gproj_mesh_save(mesh, "thrust_start.obj", NULL);
     wish.decay = 0.9;
     for (i = 0; i < AROUND; ++i) support[i] = i, support[AROUND + i] = ALONG * AROUND + i;
     loads.area_load = 1;
-    gproj_add_fixed_boundary(form, 1);
     gproj_add_equilibrium(form, &loads, &supports, 1);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
+    gproj_add_fixed_boundary(form, 1);
     gproj_set_schedule(form, gproj_add_fairness(form, wish.weight), wish);
     gproj_set_schedule(form, gproj_add_tangential_fairness(form, wish.weight), wish);
     result = gproj_solve(form, 12, NULL);

@@ -66,8 +66,8 @@ static gproj_result grow(gproj_mesh *mesh, double volume) {
     gproj_add_planarity(form, 1);
     gproj_add_volume(form, volume, 1);
     gproj_add_fixed(form, count, floor, 1);
-    gproj_add_fairness(form, 0.12);
     gproj_add_closeness(form, 0.1);
+    gproj_add_fairness(form, 0.12);
     result = gproj_solve(form, 20, NULL);
     gproj_form_destroy(form);
     return result;

@@ -1,6 +1,7 @@
 #!/bin/bash
 # check_examples.sh - every example in C builds, also alone by the command at its top, runs, prints what tests/expected/NAME.txt
-# says, is short, and is shown in examples/README.md, as are those in Python (test_python.sh runs these).
+# says, is short, is made again by problem files, and is shown in examples/README.md, as are those in Python (test_python.sh runs
+# these).
 . "$(dirname "$0")/checks.sh"
 
 ls "$root"/examples/*.c >/dev/null 2>&1 || { fail 'no examples'; report; }
@@ -36,6 +37,39 @@ done
 # examples/roof.obj, the mesh to try, is what planarize writes (but for the last digits of other maths libraries).
 clean 'examples/roof.obj is not the roof of planarize.c' "$(paste "$work/roof.obj" "$root/examples/roof.obj" | awk '
     { half = NF / 2; for (k = 1; k <= half; ++k) { d = $k - $(k + half); if ($1 != $(1 + half) || d * d > 1e-20) { print; next } } }')"
+# Problem files give the same meshes, step by step as examples/problems/steps.txt says: all that the examples write, but for
+# those that it names with a reason. The tool has the examples' library, so that no compiler's option comes between.
+differ() { # differ FILE OTHER: a complaint, unless all vertices agree to 1e-12 mean edge lengths, and all else exactly
+    paste -d '|' "$1" "$2" | awk -F '|' '
+        { n = split($1, a, " "); m = split($2, b, " "); if (n != m || a[1] != b[1]) { print "line " NR " differs"; exit bad = 1 } }
+        a[1] != "v" && $1 != $2 { print "line " NR " differs"; exit bad = 1 }
+        a[1] == "v" { for (k = 2; k < 5; ++k) { p[++c] = a[k]; d = a[k] - b[k]; if (d < 0) d = -d; if (d > far) far = d } }
+        a[1] == "f" { for (k = 2; k <= n; ++k) { i = 3 * a[k]; j = 3 * a[k < n ? k + 1 : 2]; ++edges
+            sum += sqrt((p[i] - p[j])^2 + (p[i - 1] - p[j - 1])^2 + (p[i - 2] - p[j - 2])^2) } }
+        END { if (!bad && !(far <= 1e-12 * sum / edges)) print "vertices differ by up to " far }'
+}
+steps=$root/examples/problems/steps.txt
+mkdir "$work/again"
+cp "$work"/*_start.obj "$work"/roof.obj "$work"/volume_blocks.obj "$work"/subdivision_cage.obj "$work/again"
+clean 'the tool' "$(${CC:-cc} -std=c11 -O1 -pthread -DGPROJI_IMPLEMENTED "$root/tools/guidedproj.c" "$root/examples/build/guidedproj.o" \
+    -o "$work/tool" -lm 2>&1)"
+while read -r name output problem options; do
+    [ -f "$root/examples/$name.c" ] && pass || fail "steps.txt: there is no example $name"
+    [ "$problem" = - ] && { [ -n "$options" ] && pass || fail "steps.txt: $name $output - needs a reason"; continue; }
+    # shellcheck disable=SC2086
+    clean "$problem.json $options" "$(cd "$work/again" &&
+        "$work/tool" --problem "$root/examples/problems/$problem.json" $options -o "$output" --quiet 2>&1 || echo "exit code $?")"
+done < <(grep -v '^#' "$steps")
+for source in "$root"/examples/*.c; do
+    name=$(basename "$source" .c)
+    grep -q "^$name " "$steps" && pass || fail "$name.c: steps.txt has neither a problem file nor a reason for it"
+done
+for mesh in "$work"/*.obj; do
+    name=$(basename "$mesh")
+    grep -qE "^[a-z_]+ $name - ." "$steps" && continue
+    [ -f "$work/again/$name" ] || { fail "$name: no problem file of steps.txt makes it"; continue; }
+    clean "$name is another mesh than the one of the problem file" "$(differ "$mesh" "$work/again/$name")"
+done
 for expected in "$root"/tests/expected/*.txt; do
     [ -f "$expected" ] || continue
     [ -f "$root/examples/$(basename "$expected" .txt).c" ] && pass || fail "$expected belongs to no example"

@@ -16,9 +16,9 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "lifting": "-w", "volume": "n", "fix": "v", "glide": "v", "move": "m", "equilibrium": "-w", "compressive": "-w",
            "tensile": "-w", "stress": "r", "supports": "v", "density": "n", "area-load": "n", "snow": "n", "loads": "l",
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
-           "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "iterations": "i", "tolerance": "n",
+           "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "plain": "-", "iterations": "i", "tolerance": "n",
            "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "encoding": "o", "lift": "n", "subdivide": "i",
-           "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
+           "cage": "f", "start-forces": "f", "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
 OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj",
            "panels": "out.dxf", "panel-list": "list.csv"}
 

@@ -7,6 +7,9 @@
 . "$(dirname "$0")/tool.sh"
 [ -x "$tool" ] || { echo "there is no tool at $tool: build it first, or set TOOL"; exit 2; }
 cd "$work" || exit 2
+for python in python3 /usr/bin/python3 ''; do # one with numpy
+    [ -z "$python" ] || ! $python -c 'import numpy' >/dev/null 2>&1 || break
+done
 
 # ---- meshes: a wavy roof of 6 x 6 quads, a cage, curves ----
 
@@ -46,6 +49,8 @@ round cage.obj --subdivide 2 --planar --parallelograms
 round --fill curve.obj --sides 4,4,6,6 --lift 1 --fairness 0.1
 round roof.obj --nearest --planar --conical --fix corners --epsilon 1e-4 --tolerance 1e-10
 round roof.obj --volume x1.1 --edge-length 0.5,2 --fix boundary --total-area x1.02
+round roof.obj --planar --plain --fix corners --fairness '0.1*0.9' --reference input=0.05 --iterations 12
+round roof.obj --equilibrium --compressive --fix boundary --start-forces 2
 round roof.obj --planar-boundary --straight-boundary --equal-areas --gauss 0.1 --planar --title 'a "name" \ é' --picture p.svg
 
 # ---- sections ----
@@ -111,6 +116,85 @@ printf '{"input": "cage.obj", "subdivide": 2, "fairness": 0.1, "handles": [{"ver
 sed 's/^v 2 2 2$/v 2 2 3.5/' cage.obj >pulled.obj
 "$tool" --problem handle.json -o one.obj --quiet && "$tool" pulled.obj --subdivide 2 --fairness 0.1 -o two.obj --quiet &&
     cmp -s one.obj two.obj && pass || fail 'a handle is not like the cage with this vertex moved'
+# Handles of a cage whose mesh has been shaped since: they move it by the subdivision's weights.
+"$tool" cage.obj --subdivide 2 --fix 0 --closeness 0 -o fine.obj --quiet
+cat >caged.json <<'END'
+{
+  "input": "fine.obj", "cage": "cage.obj", "subdivide": 2, "fix": 0, "closeness": 0,
+  "handles": [{"vertex": 4, "by": [0, 0, 1.5]}, {"vertex": 10, "by": [0.5, 0, 0.25], "level": 1}, {"vertex": 80, "by": [0, 1, 0], "level": 2}]
+}
+END
+sed 's/"fine.obj", "cage": //' caged.json >before.json
+near() { # near FILE OTHER MOST: all vertices agree to MOST
+    paste "$1" "$2" | awk -v most="$3" '$1 == "v" { for (k = 2; k < 5; k++) if (($k - $(k + 4))^2 > most^2) far = 1; n++ } END { exit far || !n }'
+}
+round --problem caged.json
+"$tool" --problem caged.json -o one.obj --quiet && "$tool" --problem before.json -o two.obj --quiet && near one.obj two.obj 1e-13 &&
+    ! near one.obj fine.obj 0.01 && pass || fail 'handles of --cage move the mesh in another way than before the subdivision'
+"$tool" roof.obj -o one.obj --planar --reference input=0.2 --quiet && "$tool" roof.obj -o two.obj --planar --reference roof.obj=0.2 --quiet &&
+    cmp -s one.obj two.obj && pass || fail '--reference input'
+sed 's/^\(edge,.*\),.*/\1,3/' forces.csv >threes.csv
+"$tool" --problem statics.json -o one.obj --quiet --allow-spoiled --start-forces 3 && "$tool" --problem statics.json -o two.obj --quiet \
+    --allow-spoiled --start-forces threes.csv && cmp -s one.obj two.obj && pass || fail '--start-forces 3'
+
+# ---- rows ----
+
+cat >rows.json <<'END'
+{
+  "input": "roof.obj", "fairness": 0.05,
+  "rows": [
+    {"vertices": "0-20", "unknowns": [2, 9], "weight": 0.5,
+      "terms": [[0.05, "x", "x"], [0.05, "y", "y"], [0.05, "z", "z"], [-0.1, "z", "u0"], [-0.05, "u1", "u1"], [0.05, "u0", "u0"]]},
+    {"terms": [[1, "z40"], [-1, "z41"]], "constant": -0.25},
+    {"vertices": [30, 31, 37, 38], "terms": [[1, "z"]], "constant": -0.6, "kind": "bound"},
+    {"vertices": [48], "terms": [[1, "x"]], "constant": -7, "kind": "wish"}
+  ]
+}
+END
+round --problem rows.json
+"$tool" --problem rows.json -o all.obj --quiet >out.txt 2>&1 || fail "rows.json: $(cat out.txt)"
+holds 'a row of two vertices' 'abs(z[40] - z[41] - 0.25) < 1e-10'
+holds 'bounds of rows' 'z[30] > 0.6 - 1e-10 && z[31] > 0.6 - 1e-10 && z[37] > 0.6 - 1e-10 && z[38] > 0.6 - 1e-10'
+# A sphere about (0, 0, u0) with the radius u1; u0 by the vertices 0 and 20.
+cat >sphere.awk <<'END'
+BEGIN { n = 0 }
+$1 == "v" { x[n] = $2; y[n] = $3; z[n++] = $4 }
+END {
+    u = (x[20]^2 + y[20]^2 + z[20]^2 - x[0]^2 - y[0]^2 - z[0]^2) / 2 / (z[20] - z[0])
+    for (i = 0; i < 21; i++) { r = sqrt(x[i]^2 + y[i]^2 + (z[i] - u)^2); if (i == 0) first = r; if ((r - first)^2 > 1e-16) exit 1 }
+}
+END
+awk -f sphere.awk all.obj && ! awk -f sphere.awk roof.obj && pass || fail 'rows with unknowns do not hold'
+
+printf '{"input": "roof.obj", "planar": true, "fix": "corners", "nearest": true, "closeness": 0, "rows": [{"vertices": [24], "terms": [[1, "z"]],
+    "constant": -2, "kind": "wish"}]}' >wish.json
+"$tool" --problem wish.json -o all.obj --quiet >out.txt 2>&1
+[ $? -le 1 ] && pass || fail "a wish of rows is not one: $(cat out.txt)"
+holds 'a wish of rows' 'abs(z[24] - 2) < 0.01'
+
+# ---- pulls ----
+
+cat >pulls.json <<'END'
+{
+  "input": "cage.obj", "subdivide": 2, "planar": true, "fix": "corners",
+  "pulls": [
+    {"vertex": 4, "by": [0, 0, 0.5]},
+    {"vertex": 10, "by": [0.1, 0, 0.2], "level": 1},
+    {"vertex": 30, "by": [0, 0.05, -0.1], "level": 2}
+  ]
+}
+END
+round --problem pulls.json
+"$tool" --problem pulls.json -o pulled.obj --quiet >out.txt 2>&1 || fail "pulls.json: $(cat out.txt)"
+if [ -n "$python" ]; then
+    off=$(PYTHONPATH=$here/../examples/python PYTHONDONTWRITEBYTECODE=1 GUIDEDPROJ_CACHE=$here/build/python $python "$here/problem_pulls.py" \
+        cage.obj pulled.obj 2>out.txt)
+    awk -v off="$off" 'BEGIN { exit !(off ~ /^[0-9.e+-]+$/ && off + 0 <= 1e-7) }' && pass ||
+        fail "pulls are not those of the library called directly: off by '$off' $(cat out.txt)"
+else
+    skip 'pulls by the library called directly (no python3 with numpy)'
+fi
+
 # The command line takes the place of keys.
 printf '{"input": "none.obj", "planar": 3, "output": "none/none.obj", "fix": ["0", "7"]}' >over.json
 "$tool" --problem over.json roof.obj -o over.obj --planar --fix corners --quiet && "$tool" roof.obj -o under.obj --planar \
@@ -163,6 +247,25 @@ refuse 3 '"sections" needs the key "stress"' "${P}\"sections\": [{\"edges\": \"a
 refuse 3 '"handles" needs the key "subdivide"' "${P}\"handles\": [{\"vertex\": 1, \"by\": [0, 0, 1]}]}"
 refuse 4 '"handles": there is no level 3' "${P}\"subdivide\": 2,\n\"handles\": [{\"vertex\": 1, \"by\": [0, 0, 1], \"level\": 3}]}"
 refuse 3 '"handles": there is no vertex 49 on level 0' "${P}\"handles\": [{\"vertex\": 49, \"by\": [0, 0, 1]}], \"subdivide\": 1}"
+refuse 3 '"pulls": there is no vertex 49 on level 0; it has 49' "${P}\"pulls\": [{\"vertex\": 49, \"by\": [0, 0, 1]}]}"
+refuse 4 '"pulls": there is no level 1; the last is 0' "${P}\"pulls\": [{\"vertex\": 1, \"by\": [0, 0, 1]},\n{\"vertex\": 1, \"by\": [0, 0, 1], \"level\": 1}]}"
+refuse 4 'coordinate z of handle 0 is 1e+99' "${P}\"quiet\": true, \"pulls\": [\n{\"vertex\": 1, \"by\": [0, 0, 1e99]}]}"
+refuse 3 '"pulls": "by" is missing' "${P}\"pulls\": [{\"vertex\": 1}]}"
+refuse 3 '"pulls" come after the solve that --state keeps' "${P}\"pulls\": [], \"state\": \"s.bin\"}"
+refuse 3 '--cage is subdivided to the input: add --subdivide' "${P}\"cage\": \"cage.obj\"}"
+refuse 3 '"plain": expected true' "${P}\"plain\": 1}"
+refuse 3 '"rows": "terms" is missing' "${P}\"rows\": [{\"vertices\": [0]}]}"
+refuse 3 '"rows": "terms": expected' "${P}\"rows\": [{\"terms\": [[1]]}]}"
+refuse 3 '"rows": "terms": expected' "${P}\"rows\": [{\"terms\": [[\"x1\", 1]]}]}"
+refuse 3 '"rows": "terms": expected' "${P}\"rows\": [{\"terms\": []}]}"
+refuse 3 '"rows": "kind": expected constraint, wish or bound' "${P}\"rows\": [{\"terms\": [[1, \"x1\"]], \"kind\": \"must\"}]}"
+refuse 3 '"rows": "unknowns": expected' "${P}\"rows\": [{\"terms\": [[1, \"x1\"]], \"unknowns\": [\"a\"]}]}"
+refuse 4 '"rows": there is no "x49"' "${P}\"rows\": [{\"terms\": [[1, \"x4\"],\n[1, \"x49\"]]}]}"
+refuse 3 'the start value of unknown' "${P}\"rows\": [{\"terms\": [[1, \"u0\"]], \"unknowns\": [1e99]}]}"
+refuse 3 '"rows": there is no "x"; expected' "${P}\"rows\": [{\"terms\": [[1, \"x\"]]}]}"
+refuse 3 '"rows": there is no "u1"' "${P}\"rows\": [{\"terms\": [[1, \"x1\"], [1, \"u1\"]], \"unknowns\": [1]}]}"
+refuse 3 '"rows": there is no "w1"' "${P}\"rows\": [{\"terms\": [[1, \"x1\", \"w1\"]]}]}"
+refuse 3 '"rows": there is no "u"' "${P}\"rows\": [{\"terms\": [[1, \"u\"]], \"unknowns\": [1]}]}"
 refuse 3 '"weights": there is no key "fairness"' "${P}\"weights\": [{\"of\": \"fairness\", \"vertices\": [0], \"weight\": 2}]}"
 refuse 3 '"planar" has weights for "faces"' "${P}\"weights\": [{\"of\": \"planar\", \"vertices\": [0], \"weight\": 2}]}"
 refuse 3 '"weights": there is no face 36' "${P}\"weights\": [{\"of\": \"planar\", \"faces\": [36], \"weight\": 2}]}"
@@ -181,6 +284,13 @@ refuse 1 'half of a character' '{"input": "\\ud800x"}'
 refuse 1 'begins none of' '{"input": "\\x"}'
 refuse 1 'more than 16 deep' "{\"fix\": $(printf '[%.0s' $(seq 100000))"
 refuse 1 'more than 200 keys' "{$(printf '"k%d": 1, ' $(seq 300))}"
+
+# A cage of another mesh is refused by its name; outputs do not overwrite it.
+"$tool" roof.obj --cage cage.obj --subdivide 2 --planar -o bad.obj >out.txt 2>&1
+[ $? -eq 3 ] && grep -q 'cage.obj: subdivided, this cage has 81 vertices and 64 faces, and the input 49 and 36' out.txt && pass ||
+    fail "a cage of another mesh: $(cat out.txt)"
+"$tool" --problem caged.json -o cage.obj >out.txt 2>&1
+[ $? -eq 2 ] && grep -q 'would overwrite the input .cage.obj' out.txt && pass || fail "an output over the cage: $(cat out.txt)"
 
 # A file beyond --file-limit, one of zero bytes, and outputs over the problem itself.
 head -c 1100000 /dev/zero | tr '\0' ' ' >big.json
@@ -210,9 +320,10 @@ BEGIN { srand(seed); RS = "\001" }
     printf "%s", text }
 END
 seed=0
-while [ $seed -lt 60 ]; do
+while [ $seed -lt 90 ]; do
     seed=$((seed + 1))
-    awk -v seed=$seed -f mutate.awk all.json >bad.json
+    case $((seed % 3)) in 0) from=all ;; 1) from=rows ;; 2) from=pulls ;; esac
+    awk -v seed=$seed -f mutate.awk $from.json >bad.json
     "$tool" --problem bad.json -o mutated.obj --iterations 3 --quiet >out.txt 2>&1
     status=$?
     [ $status -le 3 ] && ! grep -qE 'Sanitizer|runtime error' out.txt || fail "mutation $seed exits with $status: $(head -n 3 out.txt)"
@@ -222,7 +333,7 @@ pass
 # ---- the examples are exact and sound ----
 
 cp "$here"/../examples/problems/* .
-for name in shell three_curves hall; do
+for name in shell three_curves hall; do # check_examples.sh runs the others
     "$tool" --problem $name.json -o example.obj --quiet >out.txt 2>&1 && pass || fail "$name.json exits with $?: $(cat out.txt)"
 done
 
@@ -230,7 +341,12 @@ done
 
 if command -v python3 >/dev/null; then
     "$tool" --help >help.txt
-    python3 "$here/test_problem.py" "$here/../tools/problem.schema.json" help.txt >out.txt 2>&1 && pass || fail "$(cat out.txt)"
+    # What a section may hold, as the tool says when it is asked for a key "?".
+    for section in $(python3 "$here/test_problem.py" "$here/../tools/problem.schema.json"); do
+        printf '{"input": "roof.obj", "planar": true, "%s": [{"?": 1}]}' "$section" >asked.json
+        "$tool" --problem asked.json -o bad.obj 2>&1 | sed -n "s/.*\"$section\": there is no key \"?\" here; it has:/$section/p"
+    done >sections.txt
+    python3 "$here/test_problem.py" "$here/../tools/problem.schema.json" help.txt sections.txt >out.txt 2>&1 && pass || fail "$(cat out.txt)"
 else
     skip 'the schema (no python3)'
 fi

@@ -117,9 +117,10 @@ typedef struct tool {
     const char *fill; /* a file with a curve; NULL: the mesh is the input */
     tool_sides sides;
     tool_subdivision subdivision;
-    double lift; /* 0: none */
-    bool welds;  /* else vertices at the same place stay apart */
-    double weld; /* in mean edge lengths */
+    double lift;      /* 0: none */
+    const char *cage; /* of the input, which is then not subdivided; NULL: the input is the cage */
+    bool welds;       /* else vertices at the same place stay apart */
+    double weld;      /* in mean edge lengths */
     gprojx_encoding encoding;
     tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
         supports, reference, closeness, equal_areas;
@@ -140,11 +141,11 @@ typedef struct tool {
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
     const char *title;                /* of the picture; NULL: the name of the output */
-    bool nearest, allow_spoiled, quiet, help, version;
+    bool nearest, plain, allow_spoiled, quiet, help, version;
     bool seen[MOST_OPTIONS]; /* by row */
     tool_word *word;         /* in the order in which they were read */
     int32_t word_count;
-    const char *start_forces;
+    const char *start_forces; /* a file, or a number for all edges */
     const char *problem_path; /* --problem; NULL: none */
     gprojx_problem problem;
     int32_t line; /* of the problem file that is being dealt with, for sentences; 0: none */
@@ -154,6 +155,8 @@ typedef struct tool {
     gproj_host host;
     gprojx_threads *pool;
     gproj_mesh *mesh, *reference_mesh;
+    gproj_mesh *cage_mesh;                 /* whose vertices are handles of the mesh; NULL: no handle needs it */
+    gproj_stencil *followers[MOST_LEVELS]; /* by level of the cage, see find_followers; NULL: not needed yet */
     gproj_mesh *offset, *support;
     gproj_offset_measures offset_measures;
     gprojx_panels *panels;
@@ -698,6 +701,7 @@ static bool keep_problem_apart(tool *t, const gprojx_output *output) {
     int32_t i;
     if (t->problem_path && !keep_apart(t, output, t->problem_path, strlen(t->problem_path))) return false;
     if (t->start_forces && !keep_apart(t, output, t->start_forces, strlen(t->start_forces))) return false;
+    if (t->cage && !keep_apart(t, output, t->cage, strlen(t->cage))) return false;
     for (i = 0; i < t->problem.count; ++i) {
         const gprojx_value *v = &t->problem.value[i];
         if (v->key && strcmp(v->key, "file") == 0 && !keep_apart(t, output, v->text, v->size)) return false;
@@ -910,6 +914,91 @@ static const gprojx_value *problem_section(const tool *t, const char *key) {
     return t->problem.count > 0 ? gprojx_member(&t->problem, t->problem.value, key) : NULL;
 }
 
+/* Finds the followers of the vertices of a level of the cage, once: a row for each, with its weights in the mesh. */
+static const gproj_stencil *find_followers(tool *t, int32_t level) {
+    const gproj_subdivide_options options = {
+        .levels = t->subdivision.levels, .scheme = t->subdivision.scheme, .stencil_level = level};
+    gproj_error error;
+    gproj_stencil *stencil = NULL;
+    gproj_mesh *mesh;
+    if (t->followers[level]) return t->followers[level];
+    mesh = gproj_mesh_subdivide(t->cage_mesh, &options, &stencil, &t->host, &error);
+    if (mesh) t->followers[level] = gproj_stencil_transpose(stencil, &t->host, &error);
+    if (!t->followers[level]) fail_library(t, t->cage ? t->cage : t->input, &error);
+    gproj_stencil_destroy(stencil);
+    gproj_mesh_destroy(mesh);
+    return t->followers[level];
+}
+
+typedef struct tool_hold { /* on a vertex of the cage, of a level between, or of the mesh */
+    int32_t vertex;
+    int64_t start[2];
+    gproj_handles handles; /* one, with the followers of this vertex, or with itself; points into the above */
+    double by[3];
+} tool_hold;
+
+/* Takes hold of the vertex of an item of "handles" or "pulls". */
+static bool take_hold(tool *t, const gprojx_value *item, const char *section, tool_hold *hold) {
+    const gprojx_handle handle = gprojx_read_handle(&t->problem, item);
+    const gproj_stencil *followers = NULL;
+    gproj_error error;
+    memset(hold, 0, sizeof *hold);
+    memcpy(hold->by, handle.by, sizeof hold->by);
+    hold->vertex = handle.vertex;
+    hold->start[1] = 1;
+    hold->handles.count = 1, hold->handles.start = hold->start, hold->handles.vertex = &hold->vertex;
+    if (handle.level < t->subdivision.levels && !(followers = find_followers(t, handle.level))) return false;
+    if (!gprojx_check_handle(&t->problem, item, section, followers ? followers->row_count : t->mesh->vertex_count,
+                             &error))
+        return fail_problem(t, &error);
+    if (!followers) return true;
+    memcpy(hold->start, followers->start + handle.vertex, sizeof hold->start);
+    hold->handles.vertex = followers->column, hold->handles.weight = followers->weight;
+    return true;
+}
+
+/* Refuses pulls of vertices that there are not, before the work begins. */
+static bool check_pulls(tool *t) {
+    const gprojx_value *array = problem_section(t, "pulls"), *item;
+    tool_hold hold;
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item))
+        if (!take_hold(t, item, "pulls", &hold)) return false;
+    return true;
+}
+
+/* Moves the mesh by the handles of its cage. */
+static bool follow_handles(tool *t) {
+    const gprojx_value *array = problem_section(t, "handles"), *item;
+    tool_hold hold;
+    int64_t k;
+    int c;
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        if (!take_hold(t, item, "handles", &hold)) return false;
+        for (k = hold.start[0]; k < hold.start[1]; ++k) {
+            double *p = t->mesh->position + 3 * (size_t)hold.handles.vertex[k];
+            for (c = 0; c < 3; ++c) p[c] += (hold.handles.weight ? hold.handles.weight[k] : 1) * hold.by[c];
+        }
+    }
+    return true;
+}
+
+/* Reads the cage that the input came of, and moves the input by its handles. */
+static bool follow_cage(tool *t) {
+    const gproj_subdivide_options options = {.levels = t->subdivision.levels, .scheme = t->subdivision.scheme};
+    gproj_error error;
+    gproj_mesh *fine;
+    t->cage_mesh = load(t, t->cage, strlen(t->cage), NULL);
+    if (!t->cage_mesh) return false;
+    fine = gproj_mesh_subdivide(t->cage_mesh, &options, NULL, &t->host, &error);
+    if (!fine) return fail_library(t, t->cage, &error);
+    if (fine->vertex_count != t->mesh->vertex_count || fine->face_count != t->mesh->face_count)
+        fail(t, EXIT_REFUSED, "%s: subdivided, this cage has %ld vertices and %ld faces, and the input %ld and %ld",
+             t->cage, (long)fine->vertex_count, (long)fine->face_count, (long)t->mesh->vertex_count,
+             (long)t->mesh->face_count);
+    gproj_mesh_destroy(fine);
+    return t->exit_code == 0 && follow_handles(t);
+}
+
 /* Subdivides at once, or with handles a level at a time: the vertices of each level are pulled before the next. */
 static bool subdivide(tool *t) {
     bool pulled = problem_section(t, "handles") != NULL;
@@ -917,9 +1006,11 @@ static bool subdivide(tool *t) {
                                              .scheme = t->subdivision.scheme};
     int32_t level, last = pulled ? t->subdivision.levels : 1;
     gproj_error error;
+    if (problem_section(t, "pulls") && !(t->cage_mesh = gproj_mesh_copy(t->mesh, &t->host, &error)))
+        return fail_library(t, t->input, &error);
     for (level = 0; level <= last; ++level) {
         gproj_mesh *coarse = t->mesh;
-        if (pulled && !gprojx_problem_pull(&t->problem, coarse, level, &error)) return fail_problem(t, &error);
+        if (pulled && !gprojx_move_handles(&t->problem, coarse, level, &error)) return fail_problem(t, &error);
         if (level == last) break;
         t->mesh = gproj_mesh_subdivide(coarse, &options, NULL, &t->host, &error);
         gproj_mesh_destroy(coarse);
@@ -1090,8 +1181,8 @@ static bool make_mesh(tool *t) {
         if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
         if (!treat_seams(t)) return false;
     }
-    if (t->subdivision.levels > 0 && !subdivide(t)) return false;
-    return fabs(t->lift) <= 0 || lift(t);
+    if (t->subdivision.levels > 0 && !(t->cage ? follow_cage(t) : subdivide(t))) return false;
+    return check_pulls(t) && (fabs(t->lift) <= 0 || lift(t));
 }
 
 static bool read_mesh(tool *t) {
@@ -1266,10 +1357,11 @@ static int32_t add_all_gliding(tool *t, const tool_demand *none) {
 }
 
 static int32_t add_reference(tool *t, const tool_demand *demand) {
+    bool input = same_word(demand->text, demand->length, "input");
     gproj_error error;
-    t->reference_mesh = load(t, demand->text, demand->length, NULL);
-    if (!t->reference_mesh) return -1;
-    t->surface = gproj_surface_create(t->reference_mesh, &t->host, &error);
+    if (!input) t->reference_mesh = load(t, demand->text, demand->length, NULL);
+    if (!input && !t->reference_mesh) return -1;
+    t->surface = gproj_surface_create(input ? t->mesh : t->reference_mesh, &t->host, &error);
     if (!t->surface) fail_library(t, demand->text, &error);
     return t->surface && demand->weight > 0 ? gproj_add_reference(t->form, t->surface, demand->weight) : -1;
 }
@@ -1424,6 +1516,7 @@ typedef struct tool_option {
 #define SETS(member) .place = PLACE(member)
 
 static const tool_need a_curve = {PLACE(fill), "are those of a curve: add --fill CURVE.obj"};
+static const tool_need a_subdivision = {PLACE(subdivision), "is subdivided to the input: add --subdivide N"};
 static const tool_need a_picture = {PLACE(output[OUTPUT_PICTURE]), "is for a picture: add --picture FILE.svg"};
 static const tool_need an_offset = {PLACE(output[OUTPUT_OFFSET]),
                                     "is between the mesh and its offset: add --offset DISTANCE,FILE.obj"};
@@ -1462,6 +1555,10 @@ static const tool_option options[] = {
      "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
      "triangle four (Loop). The cage's vertices keep their numbers",
      set_subdivision, SETS(subdivision), .kind = BEGINNING},
+    {"cage", "FILE",
+     "the input came of this cage by --subdivide, and has been shaped since: it is not subdivided again, and handles "
+     "of the cage's vertices (in a problem file) move it as it is",
+     set_path, SETS(cage), .kind = BEGINNING, .needs = &a_subdivision},
     {"weld", "[=TOL]",
      "boundary vertices at the same place, within TOL mean edge lengths (1e-6; 0: exactly), become one: seams are "
      "closed, and the triangles of an STL joined. Vertices are numbered anew, and polylines left out",
@@ -1534,13 +1631,16 @@ static const tool_option options[] = {
     {"snow", "Q", "each face bears Q times its plan area", set_load, SETS(snow), .needs = &statics},
     {"loads", "FILE", "forces on vertices: CSV with the lines VERTEX,FX,FY,FZ", set_loads_file, SETS(loads),
      .needs = &statics},
-    {"start-forces", "FILE", "the forces start from those of the edges in this file, as --forces writes it", set_path,
-     SETS(start_forces), .needs = &statics},
+    {"start-forces", "FILE",
+     "the forces start from those of the edges in this file, as --forces writes it, or W: from W times the length in "
+     "all edges",
+     set_path, SETS(start_forces), .needs = &statics},
     {"force-fairness", "[=W]", "opposite edges of quads carry equal forces (a wish; W: 1 if left out)", set_wish, 0,
      SOFT, STATICS, .build = gproj_add_force_fairness, .needs = &statics},
 
-    {"reference", "FILE[=W]", "stay near the surface of this mesh (W: 0.1 if left out)", set_reference,
-     PLACE(reference), SOFT, WISHES, .add = add_reference,
+    {"reference", "FILE[=W]",
+     "stay near the surface of this mesh, or of the one that the work begins with: input (W: 0.1 if left out)",
+     set_reference, PLACE(reference), SOFT, WISHES, .add = add_reference,
      .section = "what is wished (W, or W*DECAY:N: weight W*DECAY^n in iteration n up to N, then off; N: 6, with "
                 "--equilibrium 9, if left out)"},
     {"closeness", "W",
@@ -1561,7 +1661,11 @@ static const tool_option options[] = {
      "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
      "best: they keep their weights W to the end",
      set_flag, SETS(nearest), .section = "how"},
-    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 30)", set_iterations,
+    {"plain", "",
+     "steps as gproj_solve takes them without options: not smooth, wishes without N guide for half of the iterations, "
+     "and --move pulls without a drag",
+     set_flag, SETS(plain)},
+    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 30, with --plain 20)", set_iterations,
      SETS(iterations)},
     {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
     {"epsilon", "E", "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", set_positive,
@@ -1782,7 +1886,12 @@ static bool anything_asked(const tool *t) {
 }
 
 static bool anything_wished(tool *t) {
+    const gprojx_value *rows = problem_section(t, "rows"), *item, *kind;
     int i;
+    for (item = rows ? gprojx_inside(rows) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        kind = gprojx_member(&t->problem, item, "kind");
+        if (kind && gprojx_find_kind(kind->text) == GPROJ_WISH) return true;
+    }
     for (i = 0; i < OPTION_COUNT; ++i)
         if (t->seen[i] && options[i].kind == SOFT && ((tool_demand *)place_of(t, i))->weight > 0) return true;
     return false;
@@ -1814,12 +1923,26 @@ static bool is_foreign(const tool *t, int output) {
     return t->output[output].path && format_named(t->output[output].path) != GPROJX_NEITHER;
 }
 
+/* Refuses handles on levels that there are not. */
+static bool check_levels(tool *t, const char *section) {
+    const gprojx_value *array = problem_section(t, section), *item, *level;
+    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
+        level = gprojx_member(&t->problem, item, "level");
+        t->line = item->line;
+        if (level && level->number > t->subdivision.levels)
+            return fail(t, EXIT_REFUSED, "\"%s\": there is no level %s; the last is %ld", section, level->text,
+                        (long)t->subdivision.levels);
+    }
+    t->line = 0;
+    return true;
+}
+
 /* Refuses sections of the problem that mean nothing without an option. */
 static bool check_sections(tool *t) {
     static const struct {
         const char *section, *option;
     } needs[] = {{"densities", "equilibrium"}, {"sections", "stress"}, {"handles", "subdivide"}};
-    const gprojx_value *array, *item, *level;
+    const gprojx_value *array;
     size_t k;
     for (k = 0; k < sizeof needs / sizeof needs[0]; ++k) {
         array = problem_section(t, needs[k].section);
@@ -1827,15 +1950,10 @@ static bool check_sections(tool *t) {
         if (array && !t->seen[find_option(needs[k].option)])
             return fail(t, EXIT_REFUSED, "\"%s\" needs the key \"%s\"", needs[k].section, needs[k].option);
     }
-    for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(&t->problem, item)) {
-        level = gprojx_member(&t->problem, item, "level");
-        t->line = item->line;
-        if (level && level->number > t->subdivision.levels)
-            return fail(t, EXIT_REFUSED, "\"handles\": there is no level %s; the last is %ld", level->text,
-                        (long)t->subdivision.levels);
-    }
-    t->line = 0;
-    return true;
+    array = t->output[OUTPUT_STATE].path ? problem_section(t, "pulls") : NULL;
+    t->line = array ? array->line : 0;
+    if (array) return fail(t, EXIT_REFUSED, "\"pulls\" come after the solve that --state keeps: leave out one of them");
+    return check_levels(t, "handles") && check_levels(t, "pulls");
 }
 
 /* Refuses words that JSON cannot keep. */
@@ -1853,7 +1971,7 @@ static bool check_written_problem(tool *t) {
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     int i;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : 200;
+    if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->plain ? 20 : 200;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
     if (t->fill) t->input = t->fill;
@@ -2039,12 +2157,13 @@ static bool read_command_line(tool *t, int argc, char **argv) {
 
 /* ---- the form ---- */
 
-/* Schedules a wish: --nearest keeps it on; else it ends after a few iterations, at most half of all. */
+/* Schedules a wish: --nearest keeps it on, --plain leaves its end to the library; else it ends after a few iterations,
+   at most half of all. */
 static void schedule_wish(tool *t, const tool_demand *demand, int32_t group) {
     gproj_schedule schedule;
     schedule.weight = demand->weight;
     schedule.decay = demand->decay;
-    schedule.last = demand->last > 0 ? demand->last : t->equilibrium.weight > 0 ? 9 : 6;
+    schedule.last = demand->last > 0 ? demand->last : t->plain ? GPROJ_LAST_GUIDING : t->equilibrium.weight > 0 ? 9 : 6;
     if (demand->last == 0 && schedule.last > t->iterations / 2)
         schedule.last = t->iterations > 1 ? t->iterations / 2 : 1;
     gproj_set_schedule(t->form, group, t->nearest ? gproj_keep(demand->weight) : schedule);
@@ -2089,13 +2208,17 @@ static bool read_forces(tool *t, const char *text, double *density) {
     return true;
 }
 
-/* Lets the forces start from those in the file of --start-forces; edges that it does not name have none. */
+/* Lets the forces start from the number of --start-forces, or from those in this file; edges that it does not name have
+   none. */
 static bool start_from_forces(tool *t) {
-    char *text = load_text(t, t->start_forces);
-    double *density = (double *)take(t, (size_t)t->mesh->edge_count, sizeof *density);
+    double *density = (double *)take(t, (size_t)t->mesh->edge_count, sizeof *density), all;
+    bool same = gprojx_read_number(t->start_forces, strlen(t->start_forces), &all), good = density != NULL;
+    char *text = same ? NULL : load_text(t, t->start_forces);
     gproj_error error;
-    if (text && density && read_forces(t, text, density) && gproj_set_forces(t->form, density, &error) != GPROJ_OK)
-        fail_library(t, t->start_forces, &error);
+    int32_t e;
+    for (e = 0; good && same && e < t->mesh->edge_count; ++e) density[e] = all;
+    if (good && !same) good = text && read_forces(t, text, density);
+    if (good && gproj_set_forces(t->form, density, &error) != GPROJ_OK) fail_library(t, t->start_forces, &error);
     free(text), free(density);
     return t->exit_code == 0;
 }
@@ -2200,6 +2323,12 @@ static bool measure_forces(tool *t) {
     return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
+/* Tells whether all constraints hold; sentence and report tell how near a nearest mesh came to a minimum. */
+static bool is_exact(const tool *t) {
+    return t->result.outcome == GPROJ_CONVERGED ||
+           (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
+}
+
 /* Switches the targets of --move off or on. */
 static void switch_moves(tool *t, bool on) {
     int32_t i;
@@ -2209,10 +2338,9 @@ static void switch_moves(tool *t, bool on) {
     }
 }
 
-/* Drags the handles to their positions, and releases them. */
+/* Drags the handles to their positions, and releases them: the result is that of the release. */
 static bool drag_to(tool *t, const gproj_handles *handles, const double *position) {
     gproj_error error;
-    gproj_result result;
     gproj_drag *work = gproj_drag_begin(t->form, handles, NULL, &error);
     if (!work) return fail_library(t, NULL, &error);
     if (gproj_drag_move(work, position) != GPROJ_OK) {
@@ -2220,8 +2348,8 @@ static bool drag_to(tool *t, const gproj_handles *handles, const double *positio
         gproj_drag_cancel(work);
         return false;
     }
-    result = gproj_drag_end(work);
-    return result.outcome != GPROJ_FAILED || fail_library(t, NULL, gproj_form_error(t->form));
+    t->result = gproj_drag_end(work);
+    return t->result.outcome != GPROJ_FAILED || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
 /* Drags the moved vertices to their places, an edge at a time, with a release each. Forces have no tangent space before
@@ -2252,6 +2380,22 @@ static bool drag(tool *t) {
     switch_moves(t, true);
     free(vertex), free(position);
     return good;
+}
+
+/* Drags vertices of the mesh or of its cage after the solve, one after the other, with a release each, as long as
+   all holds. */
+static bool pull(tool *t) {
+    static const double here[3] = {0, 0, 0}; /* so that a place is a displacement */
+    const gprojx_value *array = problem_section(t, "pulls"), *item;
+    tool_hold hold;
+    for (item = array ? gprojx_inside(array) : NULL; item && is_exact(t); item = gprojx_after(&t->problem, item)) {
+        if (!take_hold(t, item, "pulls", &hold)) return false;
+        hold.handles.position = here;
+        t->line = item->line;
+        if (!drag_to(t, &hold.handles, hold.by)) return false;
+        t->line = 0;
+    }
+    return true;
 }
 
 /* Goes on from the state in the file of --state, if there is one. */
@@ -2296,13 +2440,13 @@ static bool prepare_records(tool *t) {
 }
 
 static bool solve(tool *t) {
-    bool dragged = t->move_count > 0 && !t->equilibrium.given;
-    bool plain = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
+    bool dragged = t->move_count > 0 && !t->equilibrium.given && !t->plain;
+    bool unguided = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
     const gproj_solve_options how = {.tolerance = t->tolerance,
                                      .epsilon = t->epsilon,
                                      .time_budget = t->time_limit,
-                                     .skip_closeness = plain,
-                                     .smooth = !plain && !t->nearest,
+                                     .skip_closeness = unguided,
+                                     .smooth = !unguided && !t->nearest && !t->plain,
                                      .nearest = t->nearest,
                                      .on_iteration = on_iteration,
                                      .user = t};
@@ -2313,11 +2457,12 @@ static bool solve(tool *t) {
         t->result = gproj_solve(t->form, t->iterations, &how);
     else if (!solve_in_parts(t, &how))
         return false;
-    t->solve_seconds = now(NULL) - begin;
     if (t->bar) fputc('\n', stderr);
     t->bar = false;
     if (t->exit_code != 0) return false; /* the callback ran out of memory */
     if (t->result.outcome == GPROJ_FAILED) return fail_library(t, NULL, gproj_form_error(t->form));
+    if (!pull(t)) return false;
+    t->solve_seconds = now(NULL) - begin;
     t->after = gproj_measure(t->mesh, t->original, t->planarity);
     for (i = 0; t->shade && i < t->mesh->face_count; ++i) t->shade[i] = t->colour->value(t, i);
     return !t->equilibrium.given || measure_forces(t);
@@ -2356,12 +2501,6 @@ static double offset_error(const tool *t) {
 }
 
 /* ---- the verdict and the report ---- */
-
-/* Tells whether all constraints hold; sentence and report tell how near a nearest mesh came to a minimum. */
-static bool is_exact(const tool *t) {
-    return t->result.outcome == GPROJ_CONVERGED ||
-           (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
-}
 
 static int verdict_code(const tool *t) {
     bool sound = t->allow_spoiled || t->result.spoiled.total == 0;
@@ -2703,7 +2842,8 @@ static void clean_up(tool *t) {
     gproj_surface_destroy(t->surface);
     gprojx_panels_destroy(t->panels);
     gproj_mesh_destroy(t->offset), gproj_mesh_destroy(t->support);
-    gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->mesh);
+    gproj_mesh_destroy(t->reference_mesh), gproj_mesh_destroy(t->cage_mesh), gproj_mesh_destroy(t->mesh);
+    for (i = 0; i < MOST_LEVELS; ++i) gproj_stencil_destroy(t->followers[i]);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
     free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);

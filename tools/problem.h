@@ -1,8 +1,8 @@
 /* problem.h - reads a problem file: what the command line says and more, as JSON.
 
    From top to bottom: strict JSON with the line of each value; what the sections of a problem may hold; lists of vertices,
-   edges and faces; builders, which add a section to a form. Errors say line and key: `12: "rollers": ...`, to stand
-   behind the file's name and a colon. Include guidedproj.h before this file. */
+   edges and faces; builders, which add a section to a form; handles. Errors say line and key: `12: "rollers": ...`, to
+   stand behind the file's name and a colon. Include guidedproj.h before this file. */
 #ifndef GPROJX_PROBLEM_H
 #define GPROJX_PROBLEM_H
 
@@ -346,6 +346,15 @@ static bool gprojx_all(const gprojx_problem *p, const gprojx_value *array, int32
     return true;
 }
 
+/* Finds the kind of rows by its name; -1: there is none. */
+static int gprojx_find_kind(const char *name) {
+    static const char *const names[] = {"constraint", "wish", "bound"}; /* as in gproj_kind */
+    int k;
+    for (k = 0; k < 3; ++k)
+        if (strcmp(name, names[k]) == 0) return k;
+    return -1;
+}
+
 static bool gprojx_is_triple(const gprojx_problem *p, const gprojx_value *v) {
     return v->count == 3 && gprojx_all(p, v, 3, gprojx_is_number);
 }
@@ -365,6 +374,28 @@ static bool gprojx_is_points(const gprojx_problem *p, const gprojx_value *v) {
     for (point = gprojx_inside(v); point; point = gprojx_after(p, point))
         if (!gprojx_is_triple(p, point)) return false;
     return true;
+}
+/* Are these terms [FACTOR, "NAME"] or [FACTOR, "NAME", "NAME"]? */
+static bool gprojx_is_terms(const gprojx_problem *p, const gprojx_value *v) {
+    const gprojx_value *term, *name;
+    if (v->kind != GPROJX_JSON_ARRAY || v->count == 0) return false;
+    for (term = gprojx_inside(v); term; term = gprojx_after(p, term)) {
+        if (term->kind != GPROJX_JSON_ARRAY || term->count < 2 || term->count > 3) return false;
+        name = gprojx_inside(term);
+        if (!gprojx_is_number(name)) return false;
+        while ((name = gprojx_after(p, name)))
+            if (!gprojx_is_string(name)) return false;
+    }
+    return true;
+}
+static bool gprojx_is_numbers(const gprojx_problem *p, const gprojx_value *v) {
+    return gprojx_all(p, v, 1, gprojx_is_number);
+}
+static bool gprojx_is_any_number(const gprojx_problem *p, const gprojx_value *v) {
+    return (void)p, gprojx_is_number(v);
+}
+static bool gprojx_is_kind(const gprojx_problem *p, const gprojx_value *v) {
+    return (void)p, gprojx_is_string(v) && gprojx_find_kind(v->text) >= 0;
 }
 static bool gprojx_is_flag(const gprojx_problem *p, const gprojx_value *v) {
     return (void)p, v->kind == GPROJX_JSON_LITERAL && v->text[0] != 'n';
@@ -402,6 +433,10 @@ static const struct gprojx_member_rule {
     {"vertex", "a vertex, counted from 0", gprojx_is_count},
     {"level", "a number of subdivisions, from 0", gprojx_is_count},
     {"by", "[DX, DY, DZ]", gprojx_is_triple},
+    {"terms", "an array of terms [FACTOR, \"NAME\"] or [FACTOR, \"NAME\", \"NAME\"]", gprojx_is_terms},
+    {"constant", "a number", gprojx_is_any_number},
+    {"unknowns", "an array of numbers, where the unknowns start", gprojx_is_numbers},
+    {"kind", "constraint, wish or bound", gprojx_is_kind},
 };
 
 static bool gprojx_build_curve(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error);
@@ -409,6 +444,7 @@ static bool gprojx_build_plane(gprojx_problem *p, const gprojx_value *item, doub
 static bool gprojx_build_line(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error);
 static bool gprojx_build_lengths(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error);
 static bool gprojx_build_roller(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error);
+static bool gprojx_build_rows(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error);
 
 /* The sections: each is an array of objects with these members, of which those before | are needed. */
 static const struct gprojx_section {
@@ -421,10 +457,12 @@ static const struct gprojx_section {
     {"collinear", "vertices | weight", gprojx_build_line},
     {"lengths", "edges | length weight", gprojx_build_lengths},
     {"rollers", "vertices free | weight", gprojx_build_roller},
+    {"rows", "terms | vertices constant unknowns kind weight", gprojx_build_rows},
     {"sections", "edges section |", NULL},
     {"densities", "edges density |", NULL},
     {"weights", "of weight | vertices edges faces", NULL},
     {"handles", "vertex by | level", NULL},
+    {"pulls", "vertex by | level", NULL},
 };
 
 enum {
@@ -685,6 +723,65 @@ static bool gprojx_build_roller(gprojx_problem *p, const gprojx_value *item, dou
     return true;
 }
 
+/* Reads a name in a term of rows: x, y, z of the row's vertex (-1: it has none), x7 of vertex 7, u0 the first of the
+   rows' unknowns. Returns the number of the variable, or -1. */
+static int32_t gprojx_variable(const gprojx_problem *p, const gprojx_value *name, int32_t vertex, int32_t unknown,
+                               int32_t unknowns) {
+    int32_t axis = name->text[0] - 'x', number = vertex;
+    bool coordinate = axis >= 0 && axis < 3;
+    if (!coordinate && name->text[0] != 'u') return -1;
+    if ((!coordinate || name->size > 1) &&
+        !gprojx_read_integer(name->text + 1, name->size - 1, 0, (coordinate ? p->mesh->vertex_count : unknowns) - 1,
+                             &number))
+        return -1;
+    return !coordinate ? unknown + number : number < 0 ? -1 : 3 * number + axis;
+}
+
+/* Adds one row of an item of "rows", for a vertex or (-1) for none. */
+static bool gprojx_build_row(gprojx_problem *p, const gprojx_value *item, int32_t group, int32_t vertex,
+                             int32_t unknown, gproj_term *term, gproj_error *error) {
+    const gprojx_value *terms = gprojx_member(p, item, "terms"), *constant = gprojx_member(p, item, "constant");
+    const gprojx_value *unknowns = gprojx_member(p, item, "unknowns"), *from, *name;
+    int32_t count = 0;
+    for (from = gprojx_inside(terms); from; from = gprojx_after(p, from), ++count) {
+        int32_t variable[2] = {-1, -1}, k = 0;
+        term[count].a = gprojx_inside(from)->number;
+        for (name = gprojx_after(p, gprojx_inside(from)); name; name = gprojx_after(p, name)) {
+            variable[k] = gprojx_variable(p, name, vertex, unknown, unknowns ? unknowns->count : 0);
+            if (variable[k++] < 0)
+                return gprojx_problem_refuse(name, "rows", error,
+                                             "there is no \"%.60s\"; expected x, y or z (with \"vertices\"), x7 of "
+                                             "vertex 7, or u0 of the \"unknowns\"",
+                                             name->text);
+        }
+        term[count].i = variable[0], term[count].j = variable[1];
+    }
+    gproj_form_add_row(p->form, group, count, term, constant ? constant->number : 0, vertex);
+    return true;
+}
+
+/* Adds rows of quadratic terms: one for each vertex, or a single one. See gproj_form_add_row. */
+static bool gprojx_build_rows(gprojx_problem *p, const gprojx_value *item, double weight, gproj_error *error) {
+    const gprojx_value *unknowns = gprojx_member(p, item, "unknowns"), *kind = gprojx_member(p, item, "kind"), *v;
+    bool placed = gprojx_member(p, item, "vertices") != NULL, good = true;
+    int32_t count = placed ? gprojx_take_list(p, item, "vertices", "rows", error) : 1, group, unknown = -1, i;
+    gproj_term *term;
+    if (count <= 0 || weight <= 0) return count >= 0;
+    group = gproj_add_rows(p->form, "rows", kind ? (gproj_kind)gprojx_find_kind(kind->text) : GPROJ_CONSTRAINT,
+                           placed ? GPROJ_PLACE_VERTEX : GPROJ_PLACE_NONE, weight);
+    for (v = unknowns ? gprojx_inside(unknowns) : NULL; v; v = gprojx_after(p, v)) {
+        int32_t number = gproj_form_add_unknowns(p->form, group, GPROJ_UNIT_LENGTH, 1, &v->number, NULL, NULL);
+        if (unknown < 0) unknown = number;
+    }
+    if (unknowns && unknown < 0) return true; /* the form says why */
+    term = (gproj_term *)malloc((size_t)gprojx_member(p, item, "terms")->count * sizeof *term);
+    if (!term) return gprojx_refuse(error, GPROJ_ERROR_MEMORY, "out of memory");
+    for (i = 0; good && i < count; ++i)
+        good = gprojx_build_row(p, item, group, placed ? p->list[i] : -1, unknown, term, error);
+    free(term);
+    return good;
+}
+
 /* Adds the items of all sections that build rows. */
 static bool gprojx_problem_build(gprojx_problem *p, gproj_error *error) {
     const gprojx_value *array, *item, *weight;
@@ -757,19 +854,43 @@ static bool gprojx_problem_weigh(gprojx_problem *p, const gprojx_value *item, in
     return good || gprojx_problem_refuse(item, "weights", error, "%s", gproj_form_error(p->form)->message);
 }
 
+/* ---- handles and pulls ---- */
+
+typedef struct gprojx_handle {
+    int32_t level, vertex;
+    double by[3];
+} gprojx_handle;
+
+/* Reads an item of "handles" or "pulls". */
+static gprojx_handle gprojx_read_handle(const gprojx_problem *p, const gprojx_value *item) {
+    const gprojx_value *level = gprojx_member(p, item, "level"), *x;
+    gprojx_handle handle;
+    double *by = handle.by;
+    handle.level = level ? (int32_t)level->number : 0;
+    handle.vertex = (int32_t)gprojx_member(p, item, "vertex")->number;
+    for (x = gprojx_inside(gprojx_member(p, item, "by")); x; x = gprojx_after(p, x)) *by++ = x->number;
+    return handle;
+}
+
+/* Refuses a handle of a vertex that its level does not have. */
+static bool gprojx_check_handle(const gprojx_problem *p, const gprojx_value *item, const char *section,
+                                int32_t vertex_count, gproj_error *error) {
+    gprojx_handle handle = gprojx_read_handle(p, item);
+    return handle.vertex < vertex_count ||
+           gprojx_problem_refuse(gprojx_member(p, item, "vertex"), section, error,
+                                 "there is no vertex %ld on level %ld; it has %ld, counted from 0", (long)handle.vertex,
+                                 (long)handle.level, (long)vertex_count);
+}
+
 /* Moves vertices of a mesh after `level` subdivisions by the handles of this level. */
-static bool gprojx_problem_pull(const gprojx_problem *p, gproj_mesh *mesh, int32_t level, gproj_error *error) {
-    const gprojx_value *array = gprojx_member(p, p->value, "handles"), *item, *x;
+static bool gprojx_move_handles(const gprojx_problem *p, gproj_mesh *mesh, int32_t level, gproj_error *error) {
+    const gprojx_value *array = gprojx_member(p, p->value, "handles"), *item;
+    int k;
     for (item = array ? gprojx_inside(array) : NULL; item; item = gprojx_after(p, item)) {
-        const gprojx_value *at = gprojx_member(p, item, "level"), *vertex = gprojx_member(p, item, "vertex");
-        double *to;
-        if ((at ? (int32_t)at->number : 0) != level) continue;
-        if (vertex->number >= mesh->vertex_count)
-            return gprojx_problem_refuse(vertex, "handles", error,
-                                         "there is no vertex %s on level %ld; it has %ld, counted from 0", vertex->text,
-                                         (long)level, (long)mesh->vertex_count);
-        to = mesh->position + 3 * (size_t)vertex->number;
-        for (x = gprojx_inside(gprojx_member(p, item, "by")); x; x = gprojx_after(p, x)) *to++ += x->number;
+        gprojx_handle handle = gprojx_read_handle(p, item);
+        if (handle.level != level) continue;
+        if (!gprojx_check_handle(p, item, "handles", mesh->vertex_count, error)) return false;
+        for (k = 0; k < 3; ++k) mesh->position[3 * (size_t)handle.vertex + (size_t)k] += handle.by[k];
     }
     return true;
 }
