@@ -152,6 +152,14 @@ function settle() {
     opened.snapshot = snapshot();
 }
 
+/* The work that was to begin does not. */
+function refuse() {
+    undo.pop();
+    activity = 'none';
+    postMessage({is: 'error', sentence: sentence()});
+    postFrame();
+}
+
 function turn() {
     armed = false;
     if (activity === 'drag') {
@@ -218,25 +226,17 @@ const does = {
     solve({iterations}) {
         finish();
         remember();
-        if (!wasm.page_solve(iterations)) {
-            undo.pop();
-            postMessage({is: 'error', sentence: sentence()});
-            return postFrame();
-        }
         activity = 'solve';
+        if (!wasm.page_solve(iterations)) return refuse();
         postFrame(); // the first turn may take long: it analyses
         arm();
     },
     grab({vertex, reach}) {
         finish();
         remember();
-        const begun = performance.now();
-        if (!wasm.page_grab(vertex, reach)) {
-            undo.pop();
-            postMessage({is: 'error', sentence: sentence()});
-            return postFrame();
-        }
         activity = 'drag';
+        const begun = performance.now();
+        if (!wasm.page_grab(vertex, reach)) return refuse();
         took = {what: 'grab', ms: performance.now() - begun};
         postFrame();
     },
@@ -275,9 +275,10 @@ const does = {
 /* After a trap, as when memory has run out, a new instance goes on from the last state that was settled. */
 function recover(error) {
     postMessage({is: 'error', sentence: `The work broke off (${error.message}) and went back to where it began.`});
+    if (activity !== 'none') undo.pop();
     activity = 'none', target = null;
+    if (module) instantiate();
     if (!opened) return;
-    instantiate();
     does.set({settings: opened.settings});
     wasm.page_tell(chosen.tell);
     wasm.page_epsilon(chosen.epsilon);
