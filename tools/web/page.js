@@ -341,10 +341,11 @@ function thumbnail(canvas, text) {
     const range = k => [Math.min(...seen.map(p => p[k])), Math.max(...seen.map(p => p[k]))], [left, right] = range(0),
           [top, bottom] = range(1);
     const scale = Math.min(0.86 * width / (right - left || 1), 0.82 * height / (bottom - top || 1));
-    const at = p => [width / 2 + scale * (p[0] - (left + right) / 2), height / 2 + scale * (p[1] - (top + bottom) / 2)];
+    const at = seen.map(([x, y]) => [width / 2 + scale * (x - (left + right) / 2),
+        height / 2 + scale * (y - (top + bottom) / 2)]);
     const tone = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
     const path = face => {
-        face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at(seen[v])));
+        face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at[v]));
         context.closePath();
     };
     const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text),
@@ -355,11 +356,7 @@ function thumbnail(canvas, text) {
     context.fillStyle = fill;
     if (faces.length > 3000) { // lines would cover it, and a path of so many takes too long
         context.fillStyle = tone('--bar');
-        for (const face of faces) {
-            const [x, y] = [0, 1].map(k => face.map(v => at(seen[v])[k]));
-            const left = Math.min(...x), top = Math.min(...y);
-            context.fillRect(left, top, Math.max(...x) - left, Math.max(...y) - top);
-        }
+        for (const [x, y] of at) context.fillRect(x - 1.5, y - 1.5, 3, 3);
         return;
     }
     for (const [face] of faces.map(f => [f, deep(f)]).sort((a, b) => a[1] - b[1])) {
