@@ -81,8 +81,7 @@ function decode(png) {
     return {width, height, at: (x, y) => [...out.subarray(y * stride + x * channels, y * stride + x * channels + 3)]};
 }
 
-/* Another picture than the last one is drawn. A worker draws them, and the browser shows one some time after it is
- * drawn: it is there when the next one of the same is. */
+/* Draws twice: the browser shows a worker's picture some time after it is drawn, but before the next one is. */
 const redraw = () => wait(async () => {
     const turn = () => new Promise(resolve => requestAnimationFrame(resolve));
     for (let k = 0; k < 2; ++k) {
@@ -211,6 +210,14 @@ const down = {
           duration: 0
       };
 const to = (x, y, duration = 0) => ({type: 'pointerMove', x, y, duration});
+/* From now on, or since the page was opened: window.longest becomes the time in ms of the longest task of its thread;
+   the browser counts those above 50 ms. */
+const watchTasks = buffered => run(buffered => {
+    window.longest = 0;
+    new PerformanceObserver(list => {
+        for (const e of list.getEntries()) longest = Math.max(longest, e.duration);
+    }).observe({type: 'longtask', buffered});
+}, buffered);
 const median = numbers => numbers.slice().sort((a, b) => a - b)[numbers.length >> 1];
 
 async function solve() {
@@ -428,9 +435,11 @@ const tests = {
         check(await saved() === before, 'a broken file changes the mesh');
         fs.writeFileSync(noise, crypto.randomBytes(50 << 20));
         await run(() => { document.body.dataset.error = ''; });
+        await watchTasks(false);
         await upload(noise);
         await until(() => document.body.dataset.error, 'the refusal of noise');
         check(await saved() === before, 'noise changes the mesh');
+        check(await run(() => longest) <= 1000, 'by noise the page stands still for', await run(() => longest), 'ms');
         fs.rmSync(noise);
         check(/hold/.test(await solve()), 'after noise it does not solve');
     },
@@ -464,11 +473,12 @@ const tests = {
         };
         for (const [what, work] of Object.entries(begins)) {
             await run(`() => { document.body.dataset.error = ''; (function ${work})(); }`);
-            await until(what => activity === what && document.body.dataset.residual > 0, `a ${what}`, what);
-            await run(() => {
+            await until(what => {
+                if (activity !== what || !(document.body.dataset.residual > 0)) return false;
                 send({does: 'spoil'});
-                if (activity === 'drag') send({does: 'move', to: [0, 0, 1]});
-            });
+                if (what === 'drag') send({does: 'move', to: [0, 0, 1]});
+                return true;
+            }, `a ${what}`, what);
             await until(() => document.body.dataset.error, 'the sentence about the trap');
             await idle();
             const told = await run(() => document.getElementById('sentence').textContent);
@@ -642,11 +652,9 @@ const tests = {
        should be. */
     async large_meshes() {
         await open('#mesh=Large%20roof&planar=1&fixedCorners=1');
+        await watchTasks(true);
         await run(() => {
-            window.longest = 0, window.pictures = {none: 0, solve: 0, drag: 0, release: 0};
-            new PerformanceObserver(list => {
-                for (const e of list.getEntries()) longest = Math.max(longest, e.duration);
-            }).observe({type: 'longtask', buffered: true});
+            window.pictures = {none: 0, solve: 0, drag: 0, release: 0};
             const drawn = answers.drawn;
             answers.drawn = message => {
                 ++pictures[activity];

@@ -1,5 +1,5 @@
 /* page.js - the page's thread: controls, pointer, keys, texts. It computes nothing that takes long: worker.js does, and
-   sends frames; draw.js, in a worker, too, draws them. */
+   sends frames, and draw.js, in another worker, draws them. */
 'use strict';
 
 const $ = id => document.getElementById(id);
@@ -221,7 +221,7 @@ const answers = {
         selected = hovered = -1;
         drawing.setMesh(mesh);
         unseen = true;
-        if (mesh.text) opened.text = mesh.text;
+        opened.text = mesh.text;
         $('name').textContent = item || opened.name;
         $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels`;
         $('counts').title = `${mesh.edges} edges`;
@@ -280,19 +280,20 @@ const answers = {
 let memorySize = 0; // of the worker's instance, in bytes
 let pending = null; // what is being opened; it becomes `opened` when it is there
 
-/* more: {corners, levels, lift, fix}, see worker.js. */
-function open(name, bytes, preset = null, more = {}) {
-    const text = bytes.slice();
-    pending = {name, text};
+/* source: bytes, which are taken away, or a file, which the worker reads; more: {corners, levels, lift, fix}, see
+   worker.js. */
+function open(name, source, preset = null, more = {}) {
+    pending = {name};
     if (preset) setWeights(preset);
-    send({does: 'open', bytes: bytes.buffer, name, settings: weights.map((w, k) => [k, w]), ...more}, [bytes.buffer]);
+    const settings = weights.map((w, k) => [k, w]), file = source instanceof Blob;
+    send({does: 'open', source: file ? source : source.buffer, name, settings, ...more}, file ? [] : [source.buffer]);
 }
 
-async function openFile(file) {
+function openFile(file) {
     if (!file) return;
     if (file.size > 200e6) return say(`${file.name} has more than 200 MB.`, 'bad');
     item = '';
-    open(file.name, new Uint8Array(await file.arrayBuffer()));
+    open(file.name, file);
 }
 
 /* The points of an OBJ text, and its polygons by numbers from 0, or its first curve. */

@@ -108,7 +108,8 @@ class Drawing {
     }
 
     /* Where a point is on the canvas, in CSS pixels: [x, y, distance from the eye]. */
-    project(p, m = this.matrix()) {
+    project(p) {
+        const m = this.matrix();
         const [x, y, , w] = [0, 1, 2, 3].map(r => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
         return [(x / w + 1) / 2 * this.canvas.clientWidth, (1 - y / w) / 2 * this.canvas.clientHeight, w];
     }

@@ -68,7 +68,7 @@ function postVerdict(after) {
         iterations: wasm.page_iterations(), named});
 }
 
-/* `text`: the mesh as OBJ where that is not what was sent, because a curve was filled or a cage subdivided. */
+/* `text`: the mesh as it was opened, or as OBJ where a curve was filled or a cage subdivided. */
 function postMesh(name, text) {
     const vertices = wasm.page_vertices(), faces = wasm.page_faces(), edges = wasm.page_edges();
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
@@ -87,7 +87,7 @@ function postMesh(name, text) {
         edge: wasm.page_reach(1),
         meanEdge: wasm.page_mean_edge(),
         memory: wasm.memory.buffer.byteLength
-    });
+    }, [corners.buffer, ends.buffer, text.buffer]);
     postMarks();
 }
 
@@ -188,8 +188,9 @@ const does = {
         instantiate();
     },
     /* corners, levels, lift: see page_open; fix: the vertices that are fixed. */
-    open({bytes: text, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
-        if (!give(new Uint8Array(text))) return postMessage({is: 'error', sentence: 'there is not enough memory'});
+    open({source, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
+        const text = new Uint8Array(source instanceof Blob ? new FileReaderSync().readAsArrayBuffer(source) : source);
+        if (!give(text)) return postMessage({is: 'error', sentence: 'there is not enough memory'});
         if (!wasm.page_open(text.byteLength, corners, levels, lift))
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
@@ -199,7 +200,7 @@ const does = {
         if (settings) does.set({settings});
         for (const vertex of fix) wasm.page_fix(vertex, true);
         opened.snapshot = snapshot();
-        postMesh(name, other);
+        postMesh(name, opened.text.slice());
         postFrame();
     },
     set({settings}) {
@@ -282,7 +283,7 @@ function recover(error) {
     does.set({settings: opened.settings});
     wasm.page_tell(chosen.tell);
     wasm.page_epsilon(chosen.epsilon);
-    if (!give(new Uint8Array(opened.text)) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
+    if (!give(opened.text) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
     restore(opened.snapshot);
     for (const vertex of opened.fixed) wasm.page_fix(vertex, true);
     setFrames(frameSize);
