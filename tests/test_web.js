@@ -443,8 +443,8 @@ const tests = {
         fs.rmSync(noise);
         check(/hold/.test(await solve()), 'after noise it does not solve');
     },
-    /* The library's memory is overwritten in the middle of a solve, and then of a drag, so that the next load goes out of
-       bounds: a trap. A new instance goes on from where the work began, with the same fixed vertices. */
+    /* The library's memory is overwritten in the middle of a solve, and then of a drag, so that the next load goes out
+       of bounds: a trap. A new instance goes on from where the work began, with the same fixed vertices. */
     async after_a_trap_it_goes_on() {
         await openWith(() => {
             const Instance = WebAssembly.Instance;
@@ -504,8 +504,8 @@ const tests = {
         await wait(async () => {
             const lose = drawing.painter.gl.getExtension('WEBGL_lose_context'), canvas = drawing.canvas;
             const event = name => new Promise(resolve => canvas.addEventListener(name, resolve, {once: true}));
-            for (const [name, what] of [['webglcontextlost', 'loseContext'], ['webglcontextrestored', 'restoreContext']]) {
-                const came = event(name);
+            for (const [name, what] of [['lost', 'loseContext'], ['restored', 'restoreContext']]) {
+                const came = event(`webglcontext${name}`);
                 await new Promise(resolve => setTimeout(resolve));
                 lose[what]();
                 await came;
@@ -677,8 +677,9 @@ const tests = {
         await shoot('large');
         const [pictures, longest, grab] =
             await run(() => [window.pictures, window.longest, times.grab.slice(-1)[0]]);
-        console.log(`V = 10,115: longest task of the page's thread ${longest ? `${longest.toFixed(0)} ms` : 'below 50 ms'} ` +
-            `(100 wanted); stop ${stopped} ms after iteration ${seen}; ${pictures.solve} pictures of the solves, ` +
+        const told = longest ? `${longest.toFixed(0)} ms` : 'below 50 ms';
+        console.log(`V = 10,115: longest task of the page's thread ${told} (100 wanted); ` +
+            `stop ${stopped} ms after iteration ${seen}; ${pictures.solve} pictures of the solves, ` +
             `${pictures.drag} of the drag, ${pictures.release} of the release; grab ${grab.toFixed(0)} ms`);
         check(pictures.release > 0, 'no picture is drawn while it releases');
         check(longest <= 1000, `a task of the page's thread took ${longest} ms`);

@@ -119,8 +119,8 @@ void main() {
     ],
 };
 
-/* Messages {does: name, ...} name the methods setMesh, setFrame, setPoints and draw; answers are {is: 'back', buffer},
-   which gives a frame's buffer back, {is: 'drawn'}, and {is: 'restored'} by a browser that had lost all that was set. */
+/* Messages {does: name, ...} name the methods setMesh, setFrame, setPoints and draw. Answers are {is: 'back', buffer},
+   which gives a frame's buffer back, {is: 'drawn'}, and {is: 'restored'} when the browser has lost what was set. */
 class Painter {
     constructor(canvas, answer) {
         this.canvas = canvas;
