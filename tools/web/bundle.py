@@ -1,7 +1,7 @@
 """bundle.py - puts the page's parts into one HTML file: bundle.py page.html page.wasm OUT
 
 In page.html, <!-- css NAME --> and <!-- js NAME --> become the files' texts, <!-- worker NAME --> a script that is not run,
-and <!-- wasm --> the module, gzipped, in base64.
+and <!-- wasm --> the module, gzipped, in base64. Scripts have their NAME as id.
 """
 import base64, gzip, re, sys
 
@@ -16,8 +16,8 @@ def part(match):
     text = open(name, encoding="utf-8").read().replace("</script", "<\\/script")
     return {
         "css": f"<style>\n{text}</style>",
-        "js": f"<script>\n{text}</script>",
-        "worker": f'<script type="text/plain" id="worker">\n{text}</script>',
+        "js": f'<script id="{name}">\n{text}</script>',
+        "worker": f'<script type="text/plain" id="{name}">\n{text}</script>',
     }[kind]
 
 

@@ -1,5 +1,6 @@
 /* draw.js - draws a mesh by WebGL 2: flat-shaded faces coloured by a number each, edges as lines of constant width on
-   the screen, forces as their width and colour, vertices as discs.
+   the screen, forces as their width and colour, vertices as discs. Without a GPU a picture takes long, and so this runs
+   in a worker of its own, or in the page where workers have no WebGL 2 (Safari before 17): see startPainter in page.js.
 
    Lines and discs have soft rims of their own, which is smoother than the samples of antialiasing, and without a GPU
    takes less than half of the time.
@@ -118,27 +119,19 @@ void main() {
     ],
 };
 
-/* "#rrggbb" of a custom property, as three numbers in 0..1. */
-function colourOf(name) {
-    const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-    return [1, 3, 5].map(k => parseInt(text.slice(k, k + 2), 16) / 255);
-}
-
-class Drawing {
-    constructor(canvas) {
+/* Messages {does: name, ...} name the methods setMesh, setFrame, setPoints and draw. Answers are {is: 'back', buffer},
+   which gives a frame's buffer back, {is: 'drawn'}, and {is: 'restored'} when the browser has lost what was set. */
+class Painter {
+    constructor(canvas, answer) {
         this.canvas = canvas;
+        this.answer = answer;
         this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
         if (!this.gl) throw new Error('This browser has no WebGL 2, which the page draws with.');
-        this.view = {yaw: -1.05, pitch: 0.5, distance: 4, target: [0, 0, 0]};
-        this.telling = 'planarity'; // see `colours` in page.js
-        this.marked = -1;           // a face
-        this.counts = {vertices: 0, faces: 0, edges: 0};
-        this.points = [];
         this.start();
         canvas.addEventListener('webglcontextlost', event => event.preventDefault());
         canvas.addEventListener('webglcontextrestored', () => {
             this.start();
-            if (this.mesh) this.setMesh(this.mesh), this.setFrame(this.frame), this.setPoints(this.points);
+            answer({is: 'restored'});
         });
     }
 
@@ -171,13 +164,6 @@ class Drawing {
         this.arrays.edge = {array: gl.createVertexArray()};
         this.textures = ['places', 'values', 'forces'].map(name => ({name, texture: gl.createTexture()}));
         this.pairs = {name: 'pairs', texture: gl.createTexture()};
-        this.readColours();
-    }
-
-    readColours() {
-        this.colours = {};
-        for (const name of ['background', 'flat', 'middle', 'warn', 'line', 'push', 'pull', 'fixed', 'handle', 'paper'])
-            this.colours[name] = colourOf('--' + name);
     }
 
     fill(name, data, use) {
@@ -187,10 +173,9 @@ class Drawing {
     }
 
     /* {vertices, faces, edges, corners, ends} as worker.js sends them. */
-    setMesh(mesh) {
+    setMesh({mesh}) {
         const gl = this.gl, counts = [mesh.vertices, mesh.faces, mesh.edges];
         this.mesh = mesh;
-        this.counts = mesh;
         this.fill('face', mesh.corners, gl.STATIC_DRAW);
         const store = (t, ...format) => {
             gl.bindTexture(gl.TEXTURE_2D, t.texture);
@@ -207,96 +192,27 @@ class Drawing {
             t.data = new Float32Array(t.rows * ROW * (k ? 1 : 4));
             store(t, k ? gl.R32F : gl.RGBA32F, k ? gl.RED : gl.RGBA, gl.FLOAT, null);
         });
-        this.setPoints([]);
     }
 
-    /* Floats: 4 for each vertex, 1 for each face, 1 for each edge. They are copied. */
-    setFrame(frame) {
-        const gl = this.gl, {vertices, faces, edges} = this.counts;
-        const parts = [frame.subarray(0, 4 * vertices), frame.subarray(4 * vertices, 4 * vertices + faces),
-            frame.subarray(4 * vertices + faces, 4 * vertices + faces + edges)];
+    /* Floats: 4 for each vertex, 1 for each face, 1 for each edge. */
+    setFrame({buffer}) {
+        const gl = this.gl, {vertices, faces, edges} = this.mesh;
+        let first = 0;
         this.textures.forEach((t, k) => {
-            t.data.set(parts[k]);
+            const size = [4 * vertices, faces, edges][k];
+            t.data.set(new Float32Array(buffer, 4 * first, size));
+            first += size;
             gl.bindTexture(gl.TEXTURE_2D, t.texture);
             gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ROW, t.rows, k ? gl.RED : gl.RGBA, gl.FLOAT, t.data);
         });
-        this.frame = frame.slice();
+        this.answer({is: 'back', buffer}, [buffer]);
     }
 
-    get places() { return this.textures[0].data; }
-    get values() { return this.textures[1].data.subarray(0, this.counts.faces); }
-    get forces() { return this.textures[2].data.subarray(0, this.counts.edges); }
-
-    /* Pairs [vertex, kind] of discs: kind 1 is fixed, 2 is the handle, 3 is named by the verdict, 4 is under the
-       pointer. */
-    setPoints(points) {
-        this.points = points;
-        this.fill('disc', new Uint32Array(points.flat()), this.gl.DYNAMIC_DRAW);
+    /* Pairs of numbers, {vertex, kind}, one of each disc: see Drawing.setPoints. */
+    setPoints({pairs}) {
+        this.discs = pairs.length / 2;
+        this.fill('disc', pairs, this.gl.DYNAMIC_DRAW);
     }
-
-    /* -- the camera: z is up; right, up and back are the axes of the view -- */
-
-    axes() {
-        const {yaw, pitch} = this.view, c = Math.cos(pitch), s = Math.sin(pitch), cy = Math.cos(yaw),
-                    sy = Math.sin(yaw);
-        return {right: [-sy, cy, 0], up: [-s * cy, -s * sy, c], back: [c * cy, c * sy, s]};
-    }
-
-    eye() {
-        const {back} = this.axes(), {target, distance} = this.view;
-        return target.map((t, k) => t + distance * back[k]);
-    }
-
-    /* The camera's matrix, by columns. */
-    matrix() {
-        const {right, up, back} = this.axes(), eye = this.eye();
-        const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        const middle = dot(back, eye); // a mesh as it was opened has the radius 1 about the origin
-        const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
-        const focal = 3.2 * Math.min(1, aspect), near = Math.max(0.02, middle - 2), far = Math.max(1, middle + 2);
-        const rows = [right, up, back].map(axis => [...axis, -dot(axis, eye)]);
-        const depth = (far + near) / (near - far), shift = 2 * far * near / (near - far), m = [];
-        for (let k = 0; k < 4; ++k)
-            m.push(focal / aspect * rows[0][k], focal * rows[1][k], depth * rows[2][k] + (k === 3 ? shift : 0),
-                -rows[2][k]);
-        return m;
-    }
-
-    /* Where a point is on the canvas, in CSS pixels: [x, y, distance from the eye]. */
-    project(p, m = this.matrix()) {
-        const [x, y, , w] = [0, 1, 2, 3].map(r => m[r] * p[0] + m[4 + r] * p[1] + m[8 + r] * p[2] + m[12 + r]);
-        return [(x / w + 1) / 2 * this.canvas.clientWidth, (1 - y / w) / 2 * this.canvas.clientHeight, w];
-    }
-
-    place(vertex) { return Array.from(this.places.subarray(4 * vertex, 4 * vertex + 3)); }
-
-    /* How far a point at the distance w moves per CSS pixel. */
-    pixel(w) {
-        const aspect = this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight);
-        return 2 * w / (3.2 * Math.min(1, aspect) * this.canvas.clientHeight);
-    }
-
-    /* The vertex at a place on the canvas: within 14 CSS pixels, 26 of a finger, but less where edges are short, so
-       that there is room between vertices to turn the view. Of several the nearest to the eye. -1: none. */
-    pick(x, y, finger) {
-        if (!this.mesh) return -1;
-        const m = this.matrix(), {edge} = this.mesh, p = this.places, width = this.canvas.clientWidth / 2,
-              height = this.canvas.clientHeight / 2;
-        const long = edge / this.pixel(this.view.distance),
-              radius = finger ? Math.max(9, Math.min(26, long / 2)) : Math.max(5, Math.min(14, long / 3));
-        let best = -1, least = Infinity;
-        for (let v = 0, k = 0; v < this.counts.vertices; ++v, k += 4) {
-            const w = m[3] * p[k] + m[7] * p[k + 1] + m[11] * p[k + 2] + m[15];
-            const dx = ((m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) / w + 1) * width - x;
-            const dy = (1 - (m[1] * p[k] + m[5] * p[k + 1] + m[9] * p[k + 2] + m[13]) / w) * height - y;
-            const off = Math.sqrt(dx * dx + dy * dy),
-                  cost = w + 0.7 * edge * off / radius; // nearer ones first, then those below
-            if (off <= radius && cost < least) best = v, least = cost;
-        }
-        return best;
-    }
-
-    /* -- drawing -- */
 
     use(name, uniforms) {
         const gl = this.gl, program = this.programs[name];
@@ -318,38 +234,35 @@ class Drawing {
         gl.activeTexture(gl.TEXTURE0);
     }
 
-    /* Is the last picture still being drawn? Another one would make the page's thread wait. */
-    get busy() {
-        const {gl, fence} = this;
-        if (fence && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) return true;
-        if (fence) gl.deleteSync(fence);
-        this.fence = null;
-        return false;
+    /* scene: {width, height, ratio, camera, eye, colours, telling, marked, pixels}, see Drawing.draw. */
+    draw({scene}) {
+        this.drawAll(scene);
+        const {gl} = this, fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+        gl.flush();
+        const look = () => {
+            if (fence && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED)
+                return setTimeout(look, 2);
+            gl.deleteSync(fence);
+            this.answer({is: 'drawn'});
+        };
+        setTimeout(look, 0);
     }
 
-    draw() {
-        this.drawAll();
-        this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-        this.gl.flush();
-    }
-
-    drawAll() {
-        const gl = this.gl, canvas = this.canvas, ratio = Math.min(2, devicePixelRatio || 1), c = this.colours;
-        const width = Math.round(canvas.clientWidth * ratio), height = Math.round(canvas.clientHeight * ratio);
+    drawAll({width, height, ratio, camera, eye, colours: c, telling, marked, pixels}) {
+        const {gl, canvas} = this;
         if (canvas.width !== width || canvas.height !== height) canvas.width = width, canvas.height = height;
         gl.viewport(0, 0, width, height);
         gl.clearColor(...c.background, 1);
         gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
         if (!this.mesh) return;
-        const shared = {camera: this.matrix(), screen: [width, height], eye: this.eye(),
-            flatColour: c.flat, middleColour: c.middle, warnColour: c.warn};
-        const byForce = Number(this.telling === 'forces'), byLength = Number(this.telling === 'lengths');
-        const pixels = this.mesh.edge / this.pixel(this.view.distance); // of a mean edge, on the screen
+        const shared = {camera, screen: [width, height], eye, flatColour: c.flat, middleColour: c.middle,
+            warnColour: c.warn};
+        const byForce = Number(telling === 'forces'), byLength = Number(telling === 'lengths');
         gl.enable(gl.DEPTH_TEST);
         gl.disable(gl.BLEND);
         gl.enable(gl.POLYGON_OFFSET_FILL);
         gl.polygonOffset(1, 1);
-        this.use('face', {...shared, handleColour: c.handle, marked: this.marked});
+        this.use('face', {...shared, handleColour: c.handle, marked});
         gl.drawArrays(gl.TRIANGLES, 0, this.mesh.corners.length / 2);
         gl.disable(gl.POLYGON_OFFSET_FILL);
         gl.enable(gl.BLEND);
@@ -368,7 +281,17 @@ class Drawing {
         gl.drawArrays(gl.TRIANGLES, 0, 6 * this.mesh.edges);
         this.use(
             'disc', {...shared, size: 4.5 * ratio, fixedColour: c.fixed, handleColour: c.handle, paperColour: c.paper});
-        if (this.points.length) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.points.length);
+        if (this.discs) gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, this.discs);
         gl.depthMask(true);
     }
+}
+
+/* As a worker: tells whether it can draw, and then gets the canvas as its first message. */
+if (typeof document === 'undefined') {
+    let painter = null;
+    onmessage = ({data}) => {
+        if (data.canvas) painter = new Painter(data.canvas, (message, transfer) => postMessage(message, transfer));
+        else painter[data.does](data);
+    };
+    postMessage(typeof OffscreenCanvas === 'function' && new OffscreenCanvas(1, 1).getContext('webgl2') !== null);
 }

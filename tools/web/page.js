@@ -1,5 +1,5 @@
 /* page.js - the page's thread: controls, pointer, keys, texts. It computes nothing that takes long: worker.js does, and
-   sends frames; draw.js draws them. */
+   sends frames, and draw.js, in another worker, draws them. */
 'use strict';
 
 const $ = id => document.getElementById(id);
@@ -136,7 +136,7 @@ function paint() {
         if (drawing.telling === 'bends' && mesh) showGauss();
     } else if (!pictured && mesh) {
         pictured = true;
-        thumbnail($('chosen'), new TextDecoder().decode(opened.text));
+        thumbnail($('chosen'), mesh.vertices > 30000 ? '' : new TextDecoder().decode(opened.text));
     }
     requestAnimationFrame(paint);
 }
@@ -160,9 +160,12 @@ function showGauss() {
     const canvas = $('gauss'), context = canvas.getContext('2d'), {corners} = mesh, at = drawing.places;
     const {width, height} = canvas, radius = height / 2 - 6, normals = new Float64Array(3 * mesh.faces);
     for (let k = 0; k < corners.length; k += 6) {
-        const [a, b, c] = [4 * corners[k], 4 * corners[k + 2], 4 * corners[k + 4]], n = 3 * corners[k + 1];
-        const u = [0, 1, 2].map(i => at[b + i] - at[a + i]), v = [0, 1, 2].map(i => at[c + i] - at[a + i]);
-        for (let i = 0; i < 3; ++i) normals[n + i] += u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+        const a = 4 * corners[k], b = 4 * corners[k + 2], c = 4 * corners[k + 4], n = 3 * corners[k + 1];
+        const ux = at[b] - at[a], uy = at[b + 1] - at[a + 1], uz = at[b + 2] - at[a + 2];
+        const vx = at[c] - at[a], vy = at[c + 1] - at[a + 1], vz = at[c + 2] - at[a + 2];
+        normals[n] += uy * vz - uz * vy;
+        normals[n + 1] += uz * vx - ux * vz;
+        normals[n + 2] += ux * vy - uy * vx;
     }
     const {right, up, back} = drawing.axes(), style = getComputedStyle(document.documentElement);
     context.clearRect(0, 0, width, height);
@@ -173,8 +176,9 @@ function showGauss() {
     context.stroke();
     context.fillStyle = style.getPropertyValue('--accent');
     for (let f = 0; f < 3 * mesh.faces; f += 3) {
-        const n = [normals[f], normals[f + 1], normals[f + 2]], scale = radius / (Math.hypot(...n) || 1);
-        const along = axis => scale * (n[0] * axis[0] + n[1] * axis[1] + n[2] * axis[2]);
+        const nx = normals[f], ny = normals[f + 1], nz = normals[f + 2];
+        const scale = radius / (Math.hypot(nx, ny, nz) || 1);
+        const along = axis => scale * (nx * axis[0] + ny * axis[1] + nz * axis[2]);
         context.globalAlpha = along(back) > 0 ? 0.8 : 0.25;
         context.fillRect(width / 2 + along(right) - 1.5, height / 2 - along(up) - 1.5, 3, 3);
     }
@@ -217,7 +221,7 @@ const answers = {
         selected = hovered = -1;
         drawing.setMesh(mesh);
         unseen = true;
-        if (mesh.text) opened.text = mesh.text;
+        opened.text = mesh.text;
         $('name').textContent = item || opened.name;
         $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels`;
         $('counts').title = `${mesh.edges} edges`;
@@ -234,10 +238,8 @@ const answers = {
     },
     frame(state) {
         if (state.buffer) {
-            const frame = new Float32Array(state.buffer);
-            drawing.setFrame(frame);
+            drawing.setFrame(state.buffer);
             if (unseen) unseen = false, Object.assign(drawing.view, {yaw: -1.05, pitch: 0.5}), fit();
-            send({does: 'back', buffer: state.buffer}, [state.buffer]);
             document.body.dataset.frames = Number(document.body.dataset.frames || 0) + 1;
             dirty = true;
             if (colours[state.tell].key === drawing.telling) showLegend();
@@ -261,6 +263,12 @@ const answers = {
         say(capital(message.sentence), 'bad');
         document.body.dataset.error = message.sentence;
     },
+    back({buffer}) { send({does: 'back', buffer}, [buffer]); },
+    drawn() { drawing.busy = false; },
+    restored() {
+        drawing.restore();
+        dirty = true;
+    },
     text(message) {
         if (saving) saving(message.bytes);
         saving = null;
@@ -272,19 +280,20 @@ const answers = {
 let memorySize = 0; // of the worker's instance, in bytes
 let pending = null; // what is being opened; it becomes `opened` when it is there
 
-/* more: {corners, levels, lift, fix}, see worker.js. */
-function open(name, bytes, preset = null, more = {}) {
-    const text = bytes.slice();
-    pending = {name, text};
+/* source: bytes, which are taken away, or a file, which the worker reads; more: {corners, levels, lift, fix}, see
+   worker.js. */
+function open(name, source, preset = null, more = {}) {
+    pending = {name};
     if (preset) setWeights(preset);
-    send({does: 'open', bytes: bytes.buffer, name, settings: weights.map((w, k) => [k, w]), ...more}, [bytes.buffer]);
+    const settings = weights.map((w, k) => [k, w]), file = source instanceof Blob;
+    send({does: 'open', source: file ? source : source.buffer, name, settings, ...more}, file ? [] : [source.buffer]);
 }
 
-async function openFile(file) {
+function openFile(file) {
     if (!file) return;
     if (file.size > 200e6) return say(`${file.name} has more than 200 MB.`, 'bad');
     item = '';
-    open(file.name, new Uint8Array(await file.arrayBuffer()));
+    open(file.name, file);
 }
 
 /* The points of an OBJ text, and its polygons by numbers from 0, or its first curve. */
@@ -327,16 +336,17 @@ function showItem() {
 function thumbnail(canvas, text) {
     const {points, faces} = parse(text), context = canvas.getContext('2d'), {width, height} = canvas;
     context.clearRect(0, 0, width, height);
-    if (!points.length || points.length > 30000) return;
+    if (!points.length) return;
     const seen = points.map(
         ([x, y, z]) => [0.867 * x + 0.498 * y, -0.239 * x + 0.416 * y - 0.878 * z, 0.437 * x - 0.761 * y + 0.479 * z]);
     const range = k => [Math.min(...seen.map(p => p[k])), Math.max(...seen.map(p => p[k]))], [left, right] = range(0),
           [top, bottom] = range(1);
     const scale = Math.min(0.86 * width / (right - left || 1), 0.82 * height / (bottom - top || 1));
-    const at = p => [width / 2 + scale * (p[0] - (left + right) / 2), height / 2 + scale * (p[1] - (top + bottom) / 2)];
+    const at = seen.map(([x, y]) => [width / 2 + scale * (x - (left + right) / 2),
+        height / 2 + scale * (y - (top + bottom) / 2)]);
     const tone = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
     const path = face => {
-        face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at(seen[v])));
+        face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at[v]));
         context.closePath();
     };
     const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text),
@@ -345,11 +355,10 @@ function thumbnail(canvas, text) {
     context.lineWidth = curve ? 2 : Math.min(1, few / 12);
     context.strokeStyle = curve ? tone('--accent') : line;
     context.fillStyle = fill;
-    if (faces.length > 3000) { // lines would cover it
+    if (faces.length > 3000) { // lines would cover it, and a path of so many takes too long
         context.fillStyle = tone('--bar');
-        context.beginPath();
-        faces.forEach(path);
-        return context.fill();
+        for (const [x, y] of at) context.fillRect(x - 1.5, y - 1.5, 3, 3);
+        return;
     }
     for (const [face] of faces.map(f => [f, deep(f)]).sort((a, b) => a[1] - b[1])) {
         context.beginPath();
@@ -607,11 +616,7 @@ function fit() {
     const {view, canvas} = drawing, {right, up} = drawing.axes();
     Object.assign(view, {distance: 5, target: [0, 0, 0]});
     for (let round = 0; round < 5; ++round) {
-        const m = drawing.matrix(), low = [Infinity, Infinity], high = [-Infinity, -Infinity];
-        for (let v = 0; v < mesh.vertices; ++v) {
-            const p = drawing.project(drawing.place(v), m);
-            for (let k = 0; k < 2; ++k) low[k] = Math.min(low[k], p[k]), high[k] = Math.max(high[k], p[k]);
-        }
+        const [low, high] = drawing.extent();
         const size = [canvas.clientWidth - inset(), canvas.clientHeight], scale = drawing.pixel(view.distance);
         const off = [0, 1].map(k => scale * ((low[k] + high[k]) / 2 - size[k] / 2 - (k ? 0 : inset())));
         view.target = view.target.map((t, k) => t + off[0] * right[k] - off[1] * up[k]);
@@ -983,18 +988,38 @@ async function unpack() {
     return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer();
 }
 
+const workerOf = source => {
+    const made = new Worker(URL.createObjectURL(new Blob([$(source).textContent], {type: 'text/javascript'})));
+    made.onerror = event => say(`The worker failed: ${event.message}`, 'bad');
+    return made;
+};
+
+/* The painter: a worker, or, where workers have no WebGL 2, an object of the page that takes messages as one does. */
+async function startPainter(canvas) {
+    const made = workerOf('draw.js'), answer = message => answers[message.is](message);
+    const able = await new Promise(resolve => { made.onmessage = ({data}) => resolve(data); });
+    if (able && canvas.transferControlToOffscreen) {
+        const offscreen = canvas.transferControlToOffscreen();
+        made.onmessage = ({data}) => answer(data);
+        made.postMessage({canvas: offscreen}, [offscreen]);
+        return made;
+    }
+    made.terminate();
+    return Object.assign(new Painter(canvas, answer), {postMessage(message) { this[message.does](message); }});
+}
+
 async function begin() {
     const darkness = matchMedia('(prefers-color-scheme: dark)');
     setTheme(darkness.matches ? 'dark' : 'light');
     darkness.onchange = () => setTheme(darkness.matches ? 'dark' : 'light');
     makeControls();
     drawing = new Drawing($('canvas'));
-    worker = new Worker(URL.createObjectURL(new Blob([$('worker').textContent], {type: 'text/javascript'})));
+    worker = workerOf('worker.js');
     worker.onmessage = ({data}) => {
         if (data.is === 'mesh' && pending) opened = pending, pending = null, showItem();
         answers[data.is](data);
     };
-    worker.onerror = event => say(`The worker failed: ${event.message}`, 'bad');
+    drawing.painter = await startPainter(drawing.canvas);
     const bytes = await unpack();
     send({does: 'start', bytes}, [bytes]);
     listenToPointers($('canvas'));

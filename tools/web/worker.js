@@ -68,7 +68,7 @@ function postVerdict(after) {
         iterations: wasm.page_iterations(), named});
 }
 
-/* `text`: the mesh as OBJ where that is not what was sent, because a curve was filled or a cage subdivided. */
+/* `text`: the mesh as it was opened, or as OBJ where a curve was filled or a cage subdivided. */
 function postMesh(name, text) {
     const vertices = wasm.page_vertices(), faces = wasm.page_faces(), edges = wasm.page_edges();
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
@@ -87,7 +87,7 @@ function postMesh(name, text) {
         edge: wasm.page_reach(1),
         meanEdge: wasm.page_mean_edge(),
         memory: wasm.memory.buffer.byteLength
-    });
+    }, [corners.buffer, ends.buffer, text.buffer]);
     postMarks();
 }
 
@@ -152,6 +152,14 @@ function settle() {
     opened.snapshot = snapshot();
 }
 
+/* The work that was to begin does not. */
+function refuse() {
+    undo.pop();
+    activity = 'none';
+    postMessage({is: 'error', sentence: sentence()});
+    postFrame();
+}
+
 function turn() {
     armed = false;
     if (activity === 'drag') {
@@ -180,8 +188,9 @@ const does = {
         instantiate();
     },
     /* corners, levels, lift: see page_open; fix: the vertices that are fixed. */
-    open({bytes: text, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
-        if (!give(new Uint8Array(text))) return postMessage({is: 'error', sentence: 'there is not enough memory'});
+    open({source, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
+        const text = new Uint8Array(source instanceof Blob ? new FileReaderSync().readAsArrayBuffer(source) : source);
+        if (!give(text)) return postMessage({is: 'error', sentence: 'there is not enough memory'});
         if (!wasm.page_open(text.byteLength, corners, levels, lift))
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
@@ -191,7 +200,7 @@ const does = {
         if (settings) does.set({settings});
         for (const vertex of fix) wasm.page_fix(vertex, true);
         opened.snapshot = snapshot();
-        postMesh(name, other);
+        postMesh(name, opened.text.slice());
         postFrame();
     },
     set({settings}) {
@@ -218,25 +227,17 @@ const does = {
     solve({iterations}) {
         finish();
         remember();
-        if (!wasm.page_solve(iterations)) {
-            undo.pop();
-            postMessage({is: 'error', sentence: sentence()});
-            return postFrame();
-        }
         activity = 'solve';
+        if (!wasm.page_solve(iterations)) return refuse();
         postFrame(); // the first turn may take long: it analyses
         arm();
     },
     grab({vertex, reach}) {
         finish();
         remember();
-        const begun = performance.now();
-        if (!wasm.page_grab(vertex, reach)) {
-            undo.pop();
-            postMessage({is: 'error', sentence: sentence()});
-            return postFrame();
-        }
         activity = 'drag';
+        const begun = performance.now();
+        if (!wasm.page_grab(vertex, reach)) return refuse();
         took = {what: 'grab', ms: performance.now() - begun};
         postFrame();
     },
@@ -275,13 +276,14 @@ const does = {
 /* After a trap, as when memory has run out, a new instance goes on from the last state that was settled. */
 function recover(error) {
     postMessage({is: 'error', sentence: `The work broke off (${error.message}) and went back to where it began.`});
+    if (activity !== 'none') undo.pop();
     activity = 'none', target = null;
+    if (module) instantiate();
     if (!opened) return;
-    instantiate();
     does.set({settings: opened.settings});
     wasm.page_tell(chosen.tell);
     wasm.page_epsilon(chosen.epsilon);
-    if (!give(new Uint8Array(opened.text)) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
+    if (!give(opened.text) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
     restore(opened.snapshot);
     for (const vertex of opened.fixed) wasm.page_fix(vertex, true);
     setFrames(frameSize);
