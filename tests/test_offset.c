@@ -389,6 +389,30 @@ GPROJT_TEST(vertex_offsets_of_circular_meshes) {
     }
 }
 
+/* Vertices on a sphere, triangles among the faces: only the radius closes around them, whatever the normals say. */
+GPROJT_TEST(vertex_offsets_of_inscribed_meshes) {
+    static const int shapes[3] = {GRID, TRIANGLES, HEXAGONS};
+    static const double centre[3] = {0.4, 0.3, -0.5};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shapes[i], 5, 0.05, 4), *offset;
+        int32_t v, k;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            double *p = mesh->position + 3 * v, d = gprojt_far(p, centre);
+            for (k = 0; k < 3; ++k) p[k] = centre[k] + 2 * (p[k] - centre[k]) / d;
+        }
+        offset = gproj_mesh_vertex_offset(mesh, 0.25, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        for (v = 0; shapes[i] == TRIANGLES && v < mesh->vertex_count; ++v)
+            for (k = 0; k < 3; ++k)
+                GPROJT_NEAR(offset->position[3 * v + k] - centre[k], 1.125 * (mesh->position[3 * v + k] - centre[k]),
+                            1e-8);
+        GPROJT_CHECK(gproj_measure_offset(mesh, offset).parallel_max < 1e-8);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The folder of real meshes. */
 GPROJT_TEST(real_circular_meshes) {
     static const int which[] = {5, 6};
@@ -599,6 +623,7 @@ int main(void) {
     GPROJT_RUN(conicality_refusals_and_weight_0);
     GPROJT_RUN(face_offsets_of_conical_meshes);
     GPROJT_RUN(vertex_offsets_of_circular_meshes);
+    GPROJT_RUN(vertex_offsets_of_inscribed_meshes);
     GPROJT_RUN(real_circular_meshes);
     GPROJT_RUN(inexact_offsets_are_told);
     GPROJT_RUN(meshes_without_shape);

@@ -399,6 +399,31 @@ GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces: the triangles cov
     }
 }
 
+/* Convex faces are fans about their first corner; stars that go around twice turn left as well, but are none. */
+GPROJT_TEST(convex_faces_are_fans) {
+    static const int32_t corner[9] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+    int32_t degree, around, i, k;
+    for (degree = 4; degree <= 9; ++degree)
+        for (around = 1; around <= 1 + degree % 2; ++around) {
+            double p[27];
+            gproj_mesh *mesh;
+            gproj_surface *surface;
+            bool fan = true;
+            for (i = 0; i < degree; ++i) {
+                double angle = 6.283185307179586 * around * i / degree;
+                p[3 * i] = 3 * cos(angle), p[3 * i + 1] = sin(angle), p[3 * i + 2] = 0;
+            }
+            mesh = gproj_mesh_create(degree, p, 1, &degree, corner, NULL, NULL);
+            surface = gproj_surface_create(mesh, NULL, NULL);
+            GPROJT_REQUIRE(surface && surface->triangle_count == degree - 2);
+            for (i = 0; i < degree - 2; ++i)
+                for (k = 0; k < 3; ++k) fan &= surface->triangle[3 * i + k] == (k ? i + k : 0);
+            GPROJT_CHECK(fan == (around == 1));
+            gproj_surface_destroy(surface);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 60,000 corners each */
     int kind;
     for (kind = 0; kind < 2; ++kind) {
@@ -516,6 +541,7 @@ int main(void) {
     GPROJT_RUN(normals_of_a_pyramid);
     GPROJT_RUN(smooth_normals);
     GPROJT_RUN(faces_that_are_not_convex);
+    GPROJT_RUN(convex_faces_are_fans);
     GPROJT_RUN(large_faces_take_linear_time);
     GPROJT_RUN(hierarchy_of_equal_items);
     GPROJT_RUN(every_allocation_fails_once);

@@ -1629,6 +1629,70 @@ GPROJT_TEST(refusals_of_bounds) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Any forces and loads, in balance or not, with rollers among the supports: every number of the measures
+   by its definition. The last round has neither forces nor loads: 0 at the first vertex that is free along some axis. */
+GPROJT_TEST(measures_of_any_forces) {
+    static const uint8_t slides[4] = {1, 6, 0, 0};
+    static const int32_t held[4] = {0, 4, 20, 24};
+    uint64_t seed = 3;
+    int32_t round, e, v, k;
+    for (round = 0; round < 4; ++round) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 2);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_supports supports = {4, held, slides};
+        double *f = gprojt_numbers(3 * mesh->vertex_count), *w = gprojt_numbers(mesh->edge_count);
+        double *sum = gprojt_numbers(3 * mesh->vertex_count), largest = 0, down = 0, path = 0, residual = 0,
+               reaction = 0;
+        double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
+        int32_t worst = -1;
+        gproj_form *form;
+        gproj_forces m;
+        for (v = 0; round < 3 && v < 3 * mesh->vertex_count; ++v) f[v] = gprojt_uniform(&seed) - 0.7;
+        for (e = 0; round < 3 && e < mesh->edge_count; ++e) w[e] = gprojt_uniform(&seed) - 0.3 * round;
+        loads.point_load = f;
+        form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+        GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
+        memcpy(sum, f, 3 * (size_t)mesh->vertex_count * sizeof *f);
+        for (e = 0; e < mesh->edge_count; ++e) {
+            int32_t i = mesh->origin[2 * e], j = mesh->origin[2 * e + 1];
+            double length = gprojt_edge_length(mesh, e);
+            if (gproj_force_variable(form, e) < 0) continue;
+            for (k = 0; k < 3; ++k) {
+                double part = w[e] * (mesh->position[3 * i + k] - mesh->position[3 * j + k]);
+                sum[3 * i + k] += part, sum[3 * j + k] -= part;
+            }
+            path += fabs(w[e]) * length * length;
+            low[0] = fmin(low[0], w[e]), high[0] = fmax(high[0], w[e]);
+            low[1] = fmin(low[1], w[e] * length), high[1] = fmax(high[1], w[e] * length);
+        }
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            double left[3], given[3];
+            int32_t axes = gprojt_inside_axes(form, v);
+            for (k = 0; k < 3; ++k) {
+                left[k] = axes >> k & 1 ? sum[3 * v + k] : 0;
+                given[k] = axes >> k & 1 ? 0 : sum[3 * v + k];
+            }
+            largest = fmax(largest, gprojt_length3(f + 3 * v)), down -= f[3 * v + 2];
+            reaction = fmax(reaction, gprojt_length3(given));
+            if (axes && (worst < 0 || gprojt_length3(left) > residual)) worst = v, residual = gprojt_length3(left);
+        }
+        m = gproj_measure_forces(form, NULL);
+        GPROJT_CHECK(m.residual_vertex == worst && (round < 3 || m.residual == 0));
+        GPROJT_NEAR(m.residual, largest > 0 ? residual / largest : 0, 1e-12);
+        GPROJT_NEAR(m.load_path, path, 1e-12 * (1 + path));
+        GPROJT_NEAR(m.total_load, down, 1e-12);
+        GPROJT_NEAR(m.max_reaction, reaction, 1e-12);
+        GPROJT_NEAR(m.min_density, low[0], 1e-12);
+        GPROJT_NEAR(m.max_density, high[0], 1e-12);
+        GPROJT_NEAR(m.min_force, low[1], 1e-12);
+        GPROJT_NEAR(m.max_force, high[1], 1e-12);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(f), free(w), free(sum);
+    }
+}
+
 GPROJT_TEST(no_form) {
     gproj_loads loads = gprojt_no_loads();
     gproj_supports supports = {0, NULL, NULL};
@@ -1825,6 +1889,7 @@ int main(void) {
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);
+    GPROJT_RUN(measures_of_any_forces);
     GPROJT_RUN(no_form);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(same_bits_for_all_workers);
