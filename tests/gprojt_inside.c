@@ -20,6 +20,8 @@ double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t r
     return form->system->group[group].row[row].weight;
 }
 
+bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { return gproji_ends_better(a, b); }
+
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {
     return gproji_volume(mesh, position, height, gradient, NULL);
 }

@@ -24,6 +24,9 @@ bool gprojt_inside_has_forces(const gproj_form *form);
 double gprojt_inside_weight(const gproj_form *form, int32_t group);
 double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t row);
 
+/* Is end a of an attempt better than b? */
+bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);
+
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);
 

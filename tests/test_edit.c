@@ -496,6 +496,40 @@ GPROJT_TEST(split_and_collapse_is_nothing) {
     }
 }
 
+/* Each edge of each shape, alone: a split leaves the first corners of faces and the first edges of vertices where they
+   were; a collapsed edge is no more, and the numbers of its ends stand for the vertex that is left. */
+GPROJT_TEST(each_edge_by_itself) {
+    int32_t collapsed = 0;
+    int shape;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        gprojt_soup s = gprojt_shape(shape, 3);
+        gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+        int32_t edge, i;
+        for (edge = 0; edge < mesh->edge_count; ++edge) {
+            gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
+            int32_t a = mesh->origin[2 * edge], b = mesh->origin[2 * edge + 1], kept;
+            GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.25, NULL) == mesh->vertex_count);
+            for (i = 0; i < mesh->face_count; ++i)
+                GPROJT_CHECK(e->origin[e->face_halfedge[i]] == mesh->origin[mesh->face_halfedge[i]]);
+            GPROJT_CHECK(gprojt_validate_edit(e) == NULL);
+            gproj_edit_destroy(e);
+            e = gproj_edit_create(mesh, NULL, NULL);
+            kept = gproj_edit_collapse_edge(e, edge, 0.5, NULL);
+            if (kept >= 0) {
+                GPROJT_CHECK(gproj_edit_vertex(e, a) == kept && gproj_edit_vertex(e, b) == kept);
+                GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == -1);
+                GPROJT_CHECK(gproj_edit_collapse_edge(e, edge, 0.5, NULL) == -1);
+                GPROJT_CHECK(gprojt_validate_edit(e) == NULL);
+                ++collapsed;
+            }
+            gproj_edit_destroy(e);
+        }
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&s);
+    }
+    GPROJT_CHECK(collapsed > 100);
+}
+
 /* -- strips -- */
 
 /* A strip inserted at each edge that has one and removed again. Quads stay quads. */
@@ -1131,6 +1165,7 @@ int main(void) {
     GPROJT_RUN(splits_and_cuts);
     GPROJT_RUN(collapses_carry_numbers_on);
     GPROJT_RUN(split_and_collapse_is_nothing);
+    GPROJT_RUN(each_edge_by_itself);
     GPROJT_RUN(strips_come_and_go);
     GPROJT_RUN(strips_that_cross_themselves);
     GPROJT_RUN(strips_are_cut_where_asked);

@@ -1059,6 +1059,23 @@ GPROJT_TEST(faces_held_bent_are_named) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the first is named. */
+GPROJT_TEST(triangles_held_are_not_named) {
+    static const double p[42] = {0, 0, 0, 0, 0, 1,   0, 0, 3, 5, 0, 0,   6, 0, 0.5, 6, 1, 0, 5, 1, 0.5,
+                                 8, 0, 0, 9, 0, 0.5, 9, 1, 0, 8, 1, 0.5, 1, 0, 0,   2, 0, 0, 1, 1, 1};
+    static const int32_t degree[4] = {3, 4, 4, 3}, corner[14] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
+    gproj_mesh *mesh = gproj_mesh_create(14, p, 4, degree, corner, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, mesh->vertex_count, NULL, 1);
+    result = gproj_solve(form, 10, NULL);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "face 1 cannot become flat"));
+    GPROJT_CHECK(strstr(result.message, "and others") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(gauss_fairness_needs_planarity) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_hybrid_grid(4, 4));
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -2283,6 +2300,7 @@ int main(void) {
     GPROJT_RUN(gauss_planes_turn_with_the_faces);
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
+    GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);

@@ -389,6 +389,30 @@ GPROJT_TEST(vertex_offsets_of_circular_meshes) {
     }
 }
 
+/* Vertices on a sphere, triangles among the faces: only the radius closes around them, whatever the normals say. */
+GPROJT_TEST(vertex_offsets_of_inscribed_meshes) {
+    static const int shapes[3] = {GRID, TRIANGLES, HEXAGONS};
+    static const double centre[3] = {0.4, 0.3, -0.5};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shapes[i], 5, 0.05, 4), *offset;
+        int32_t v, k;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            double *p = mesh->position + 3 * v, d = gprojt_far(p, centre);
+            for (k = 0; k < 3; ++k) p[k] = centre[k] + 2 * (p[k] - centre[k]) / d;
+        }
+        offset = gproj_mesh_vertex_offset(mesh, 0.25, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        for (v = 0; shapes[i] == TRIANGLES && v < mesh->vertex_count; ++v)
+            for (k = 0; k < 3; ++k)
+                GPROJT_NEAR(offset->position[3 * v + k] - centre[k], 1.125 * (mesh->position[3 * v + k] - centre[k]),
+                            1e-8);
+        GPROJT_CHECK(gproj_measure_offset(mesh, offset).parallel_max < 1e-8);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The folder of real meshes. */
 GPROJT_TEST(real_circular_meshes) {
     static const int which[] = {5, 6};
@@ -431,6 +455,80 @@ GPROJT_TEST(inexact_offsets_are_told) {
         GPROJT_CHECK(m.face_distance_max - m.face_distance_min > 1e-6 * d);
         gproj_mesh_destroy(by_vertex);
         gproj_mesh_destroy(by_face);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* out += P d, the part of d across an edge; sign -1: out -= P d. */
+static void gprojt_add_across(const gproj_mesh *mesh, int32_t edge, const double d[3], double sign, double out[3]) {
+    double along[3], length2, part;
+    int32_t k;
+    gprojt_sub3(mesh->position + 3 * mesh->origin[2 * edge + 1], mesh->position + 3 * mesh->origin[2 * edge], along);
+    length2 = gprojt_dot3(along, along), part = gprojt_dot3(along, d) / length2;
+    for (k = 0; k < 3; ++k) out[k] += sign * (d[k] - part * along[k]);
+}
+
+/* Face offsets of any mesh, by what they minimise: with x the field, n the faces' unit normals and P across an edge, the
+   gradient of sum (n'x - 1)^2 + sum |P (x_j - x_i)|^2 over inner edges is 0; that of the same sum over boundary edges is
+   0 in the plane of a corner's one face, or along the one edge between two faces. */
+GPROJT_TEST(face_offsets_are_least) {
+    static const int shapes[5] = {GRID, TRIANGLES, HEXAGONS, TORUS, CUBE_SPHERE};
+    const double distance = 0.125;
+    int i;
+    for (i = 0; i < 5; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shapes[i], 4, 0.08, 6), *offset;
+        double *x = gprojt_keep(mesh), *slope[2], *normal;
+        int32_t v, k, e, f, h, bound = 0;
+        slope[0] = (double *)calloc(3 * (size_t)mesh->vertex_count, sizeof(double));
+        slope[1] = (double *)calloc(3 * (size_t)mesh->vertex_count, sizeof(double));
+        normal = (double *)calloc(3 * (size_t)mesh->face_count, sizeof(double));
+        if (!slope[0] || !slope[1] || !normal) abort();
+        offset = gproj_mesh_face_offset(mesh, distance, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) x[v] = (offset->position[v] - mesh->position[v]) / distance;
+        for (f = 0; f < mesh->face_count; ++f) {
+            double *n = normal + 3 * f, area[3], length;
+            for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+                gprojt_cross3(mesh->position + 3 * mesh->origin[h], mesh->position + 3 * mesh->origin[mesh->next[h]],
+                              area);
+                for (v = 0; v < 3; ++v) n[v] += area[v];
+            }
+            length = gprojt_length3(n);
+            for (v = 0; v < 3; ++v) n[v] /= length;
+            for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+                for (v = 0; v < 3; ++v)
+                    slope[0][3 * mesh->origin[h] + v] += (gprojt_dot3(n, x + 3 * mesh->origin[h]) - 1) * n[v];
+        }
+        for (e = 0; e < mesh->edge_count; ++e) {
+            int32_t a = mesh->origin[2 * e], b = mesh->origin[2 * e + 1];
+            double *of = slope[mesh->face[2 * e + 1] < 0], d[3];
+            gprojt_sub3(x + 3 * b, x + 3 * a, d);
+            gprojt_add_across(mesh, e, d, 1, of + 3 * b);
+            gprojt_add_across(mesh, e, d, -1, of + 3 * a);
+        }
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            double *s = slope[1] + 3 * v, left[3] = {0, 0, 0};
+            int32_t start = mesh->vertex_halfedge[v], valence = gproj_mesh_valence(mesh, v);
+            bool outer = gproj_mesh_is_boundary_vertex(mesh, v);
+            /* A face that is not flat is not along its edges, which a vertex between two has moved along. */
+            if (!outer || valence != 3 || shapes[i] == TRIANGLES)
+                GPROJT_NEAR(gprojt_length3(slope[0] + 3 * v), 0, 1e-9);
+            if (!outer || valence > 3) continue;
+            h = mesh->next[mesh->twin[start]]; /* the first with a face */
+            if (valence == 2) {
+                const double *n = normal + 3 * mesh->face[h];
+                for (k = 0; k < 3; ++k) left[k] = s[k] - gprojt_dot3(n, s) * n[k];
+                GPROJT_NEAR(gprojt_length3(left), 0, 1e-9);
+            } else {
+                for (h = start; mesh->face[h | 1] < 0;) h = mesh->next[mesh->twin[h]];
+                gprojt_add_across(mesh, h / 2, s, 1, left);
+                GPROJT_NEAR(gprojt_dot3(s, s), gprojt_dot3(left, left), 1e-15);
+            }
+            ++bound;
+        }
+        GPROJT_CHECK((bound > 3) == (i < 3));
+        free(slope[0]), free(slope[1]), free(normal), free(x);
+        gproj_mesh_destroy(offset);
         gproj_mesh_destroy(mesh);
     }
 }
@@ -599,8 +697,10 @@ int main(void) {
     GPROJT_RUN(conicality_refusals_and_weight_0);
     GPROJT_RUN(face_offsets_of_conical_meshes);
     GPROJT_RUN(vertex_offsets_of_circular_meshes);
+    GPROJT_RUN(vertex_offsets_of_inscribed_meshes);
     GPROJT_RUN(real_circular_meshes);
     GPROJT_RUN(inexact_offsets_are_told);
+    GPROJT_RUN(face_offsets_are_least);
     GPROJT_RUN(meshes_without_shape);
     GPROJT_RUN(flat_pieces);
     GPROJT_RUN(offsets_scale_with_the_mesh);

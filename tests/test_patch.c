@@ -284,6 +284,36 @@ GPROJT_TEST(patterns_with_rows_are_found) {
     GPROJT_CHECK(with > 100);
 }
 
+/* In a path with rows the thinnest strips grow first: one that is thinner by two has edges of one beside it, where it could
+   not grow. */
+GPROJT_TEST(strips_of_paths_with_rows_are_even) {
+    static const int32_t longest[SIDES + 1] = {0, 0, 1, 9, 7, 6, 5};
+    static gproji_candidates c;
+    int32_t sides, i, j, k, even = 0;
+    for (sides = 4; sides <= SIDES; ++sides) {
+        int32_t length[SIDES] = {1, 1, 1, 1, 1, 1};
+        do {
+            if (sum_of(sides, length) % 2) continue;
+            gproji_find_patterns(&c, sides, length);
+            for (k = 0; k < c.count; ++k) {
+                const gproji_pattern *p = &c.pattern[k];
+                if (p->edges != sides - 1 || p->end[0] != 1 || p->below || p->rows > 0) continue;
+                for (i = 0; i < sides; ++i)
+                    for (j = 0; j < sides; ++j) {
+                        int32_t before = (j + sides - 1) % sides, after = (j + 1) % sides;
+                        bool stuck = (before > 0 && p->edge[sides - 1 - before] < 2) ||
+                                     (after > 0 && p->edge[sides - 1 - after] < 2);
+                        if (i == 1 || i == sides - 1 || j == 1 || j == sides - 1 || p->strip[i] < p->strip[j] + 2)
+                            continue;
+                        GPROJT_CHECK(stuck);
+                        ++even;
+                    }
+            }
+        } while (next_lengths(sides, 1, longest[sides], length));
+    }
+    GPROJT_CHECK(even > 0);
+}
+
 /* Irregular vertices are far from the boundary and from each other: between two sides of n edges they divide the length
    into three parts. */
 GPROJT_TEST(irregular_vertices_are_apart) {
@@ -344,6 +374,7 @@ int main(void) {
     GPROJT_RUN(patterns_solve_their_equations);
     GPROJT_RUN(all_patterns_are_found);
     GPROJT_RUN(patterns_with_rows_are_found);
+    GPROJT_RUN(strips_of_paths_with_rows_are_even);
     GPROJT_RUN(irregular_vertices_are_apart);
     return gprojt_report();
 }

@@ -399,6 +399,38 @@ GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces: the triangles cov
     }
 }
 
+/* Convex faces are fans about their first corner, whatever was cut before; stars that go around twice turn left as well,
+   but are none. */
+GPROJT_TEST(convex_faces_are_fans) {
+    gprojt_soup s;
+    gproj_mesh *mesh;
+    gproj_surface *surface;
+    int32_t degree, around, corner[9], first[9], f, i, k, at = 0;
+    bool fan, star[9];
+    memset(&s, 0, sizeof s);
+    for (degree = 9; degree >= 4; --degree)
+        for (around = 1; around <= 1 + degree % 2; ++around) {
+            for (i = 0; i < degree; ++i) {
+                double angle = 6.283185307179586 * around * i / degree;
+                corner[i] = gprojt_add_vertex(&s, 3 * cos(angle), sin(angle), 0);
+            }
+            first[s.face_count] = corner[0], star[s.face_count] = around > 1;
+            gprojt_add_face(&s, degree, corner);
+        }
+    mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    surface = gproj_surface_create(mesh, NULL, NULL);
+    GPROJT_REQUIRE(surface != NULL);
+    for (f = 0; f < mesh->face_count; ++f) {
+        for (i = 0, fan = true; i < mesh->face_degree[f] - 2; ++i, ++at)
+            for (k = 0; k < 3; ++k) fan &= surface->triangle[3 * at + k] == first[f] + (k ? i + k : 0);
+        GPROJT_CHECK(fan == !star[f]);
+    }
+    GPROJT_CHECK(at == surface->triangle_count);
+    gproj_surface_destroy(surface);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+}
+
 GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 60,000 corners each */
     int kind;
     for (kind = 0; kind < 2; ++kind) {
@@ -516,6 +548,7 @@ int main(void) {
     GPROJT_RUN(normals_of_a_pyramid);
     GPROJT_RUN(smooth_normals);
     GPROJT_RUN(faces_that_are_not_convex);
+    GPROJT_RUN(convex_faces_are_fans);
     GPROJT_RUN(large_faces_take_linear_time);
     GPROJT_RUN(hierarchy_of_equal_items);
     GPROJT_RUN(every_allocation_fails_once);

@@ -344,6 +344,25 @@ GPROJT_TEST(midspheres_begin_at_their_place) {
     }
 }
 
+/* Of midpoints in a plane there are many spheres: the one around their centre is chosen, in this plane. */
+GPROJT_TEST(flat_midspheres_begin_in_their_plane) {
+    gprojt_soup soup = gprojt_cube_sphere(1);
+    gproj_mesh *mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t edge[4], h = mesh->face_halfedge[2], sphere = 3 * mesh->vertex_count, i, k;
+    double centre[3] = {0, 0, 0};
+    for (i = 0; i < 4; ++i, h = mesh->next[h]) {
+        edge[i] = h / 2;
+        for (k = 0; k < 3; ++k) centre[k] += mesh->position[3 * mesh->origin[h] + k] / 4;
+    }
+    GPROJT_CHECK(gproj_add_midsphere(form, 4, edge, 1) >= 0);
+    for (k = 0; k < 3; ++k)
+        GPROJT_NEAR(gproj_system_values(gproj_form_system(form))[sphere + k] * gprojt_unit(form), centre[k], 1e-6);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
+}
+
 /* The midpoints' sphere, checked apart from the library; on a real sphere it is that one. */
 GPROJT_TEST(edge_midpoints_on_a_sphere) {
     gprojt_soup soup = gprojt_cube_sphere(3);
@@ -417,6 +436,7 @@ int main(void) {
     GPROJT_RUN(wrong_rows_are_refused);
     GPROJT_RUN(unknowns_refused);
     GPROJT_RUN(midspheres_begin_at_their_place);
+    GPROJT_RUN(flat_midspheres_begin_in_their_plane);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();

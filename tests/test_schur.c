@@ -337,6 +337,46 @@ GPROJT_TEST(steps_are_those_of_the_dense_matrix) {
     for (i = 0; i < GPROJT_CASES; ++i) gprojt_check_case(&gprojt_cases[i]);
 }
 
+/* Elements enough for several tasks: each one adds its part once, and the step is where the gradient ends. */
+GPROJT_TEST(steps_of_many_elements) {
+    static const int32_t sizes[2] = {33, 41};
+    const double epsilon = 1e-3;
+    int32_t round, i, r, v;
+    for (round = 0; round < 2; ++round) {
+        gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, sizes[round], 0.1);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        double *metric, *left, *gradient, worst = 0, largest = 0;
+        const gproj_system *s;
+        gprojt_build(form, mesh, 1, GPROJT_CLOSE);
+        gprojt_begin(form, true);
+        s = form->system;
+        GPROJT_CHECK(s->schur.on && s->schur.chunks > 1);
+        metric = gprojt_metric(form, epsilon);
+        GPROJT_CHECK(gproji_find_step(&form->solve.loop, epsilon));
+        left = (double *)calloc((size_t)s->variable_count, sizeof *left);
+        gradient = (double *)malloc((size_t)s->variable_count * sizeof *gradient);
+        if (!left || !gradient) abort();
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) {
+            GPROJT_NEAR(s->schur.metric[s->nodes.of[v]] / metric[v / 3], 1, 1e-9);
+            left[v] = epsilon * epsilon * metric[v / 3] * s->vector.step[v];
+        }
+        for (i = 0; i < s->group_count; ++i)
+            for (r = 0; r < s->group[i].row_count; ++r) {
+                double w = s->group[i].weight * s->group[i].row[r].weight, phi, along = 0;
+                if (w == 0) continue;
+                phi = gproj_system_row_value(s, i, r, gradient);
+                for (v = 0; v < s->variable_count; ++v) along += gradient[v] * s->vector.step[v];
+                for (v = 0; v < s->variable_count; ++v) left[v] += w * w * (phi + along) * gradient[v];
+                largest = fmax(largest, w * w * fabs(phi));
+            }
+        for (v = 0; v < s->variable_count; ++v) worst = fmax(worst, fabs(left[v]));
+        GPROJT_CHECK(worst <= 1e-12 * largest);
+        free(metric), free(left), free(gradient);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- when they are taken -- */
 
 static bool gprojt_is_on(const gproj_form *form) { return form->system->compiled && form->system->schur.on; }
@@ -928,6 +968,7 @@ GPROJT_TEST(faces_on_fixed_lines) {
 
 int main(void) {
     GPROJT_RUN(steps_are_those_of_the_dense_matrix);
+    GPROJT_RUN(steps_of_many_elements);
     GPROJT_RUN(taken_where_only_constraints_act);
     GPROJT_RUN(nearest_solves_and_drags_do_without);
     GPROJT_RUN(idle_groups_change_nothing);

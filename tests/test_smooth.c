@@ -1,6 +1,7 @@
 /* test_smooth.c - solves that are smooth (gproj_solve_options.smooth): steps measured by their smoothness, local unknowns
    settled, corners of faces kept. */
 #include "gprojt_form.h"
+#include "gprojt_inside.h"
 
 static gproj_solve_options gprojt_smooth(void) {
     gproj_solve_options options;
@@ -215,6 +216,25 @@ GPROJT_TEST(attempts) {
         }
 }
 
+/* Which of two ends counts: exact before all others, then whole, then near; the earlier one if they are equal. */
+GPROJT_TEST(ends_are_compared) {
+    static const struct {
+        gproj_outcome outcome;
+        int32_t spoiled;
+        double residual;
+    } better[6] = {{GPROJ_CONVERGED, 0, 1e-9}, {GPROJ_CONVERGED, 1, 1e-12},      {GPROJ_CONVERGED, 5, 0},
+                   {GPROJ_STALLED, 9, 1e-6},   {GPROJ_ITERATION_LIMIT, 0, 1e-5}, {GPROJ_STALLED, 0, 1e-2}};
+    gproj_result end[6];
+    int i, j;
+    memset(end, 0, sizeof end);
+    for (i = 0; i < 6; ++i) {
+        end[i].outcome = better[i].outcome, end[i].spoiled.total = better[i].spoiled;
+        end[i].residual = better[i].residual;
+    }
+    for (i = 0; i < 6; ++i)
+        for (j = 0; j < 6; ++j) GPROJT_CHECK(gprojt_inside_ends_better(&end[i], &end[j]) == (i < j));
+}
+
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
    and in a new one. */
 GPROJT_TEST(frames_and_states) {
@@ -295,6 +315,7 @@ int main(void) {
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(attempts);
+    GPROJT_RUN(ends_are_compared);
     GPROJT_RUN(frames_and_states);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);

@@ -679,6 +679,28 @@ GPROJT_TEST(states_of_others) {
     gproj_mesh_destroy(mesh), gproj_mesh_destroy(moved), gproj_mesh_destroy(larger);
 }
 
+/* Forms whose only difference is one variable in one term, the first or the second. */
+GPROJT_TEST(states_of_other_variables) {
+    static const gproj_term terms[3] = {{3, 7, 1}, {4, 7, 1}, {3, 8, 1}};
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form[3];
+    uint8_t *state;
+    size_t size;
+    int k;
+    for (k = 0; k < 3; ++k) {
+        form[k] = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_form_add_row(form[k], gproj_add_rows(form[k], "own", GPROJ_WISH, GPROJ_PLACE_VERTEX, 1), 1,
+                                        &terms[k], 0, 0) == 0);
+    }
+    state = gprojt_save(form[0], &size);
+    GPROJT_CHECK(gproj_state_restore(form[0], state, size, NULL) == GPROJ_OK);
+    gprojt_check_refused(form[1], state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    gprojt_check_refused(form[2], state, size, GPROJ_ERROR_ARGUMENT, "another form");
+    for (k = 0; k < 3; ++k) gproj_form_destroy(form[k]);
+    gproj_mesh_destroy(mesh);
+    free(state);
+}
+
 GPROJT_TEST(what_cannot_be_saved) {
     gproj_mesh *mesh = gprojt_roof(3, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -752,6 +774,7 @@ int main(void) {
     GPROJT_RUN(solved_again_after_a_restore);
     GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
+    GPROJT_RUN(states_of_other_variables);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(failing_allocations);
     return gprojt_report();
