@@ -23329,10 +23329,12 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 
 /* -- demands that can never hold -- */
 
-/* Marks coordinates that a constraint prescribes by a row with a single term: held[i] = 1, value[i] the prescribed
-   value; else both are 0. Returns the number of vertices with three such coordinates. */
+/* Marks coordinates that a constraint prescribes by a row with a single term, and those of corners that a gliding
+   boundary keeps: held[i] = 1, value[i] the prescribed value; else both are 0. Returns the number of vertices with three
+   such coordinates. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
-    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
+    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, k, count = 0;
+    const gproji_part *part;
     memset(held, 0, (size_t)coordinates * sizeof *held);
     memset(value, 0, (size_t)coordinates * sizeof *value);
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
@@ -23349,45 +23351,68 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
             value[v] = -row->constant / term->a;
         }
     }
+    for (part = form->part; part; part = part->next) {
+        if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
+        for (i = 0; i < part->count; ++i) {
+            size_t v = 3 * (size_t)part->vertex[i];
+            if (gproji_curve_at(part, i)) continue;
+            for (k = 0; k < 3; ++k) held[v + (size_t)k] = 1;
+            gproji_copy3(form->original + v, value + v);
+        }
+    }
     for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
     return count;
 }
 
-/* Are all vertices of a face held, in places that are not in a plane? */
-GPROJI_INTERNAL bool gproji_is_held_bent(const gproj_mesh *mesh, const double *held, const double *value,
-                                         int32_t face) {
-    static const double up[3] = {0, 0, 1};
-    static const double noticeable = 1e-9; /* mean edges */
-    double normal[3], mean = 0, most = 0;
-    int32_t h = mesh->face_halfedge[face], c, k, held_count = 0;
-    if (mesh->face_degree[face] < 4) return false;
-    gproji_area_vector(mesh, value, face, normal);
-    gproji_normalise3(normal, up);
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        for (k = 0; k < 3; ++k) held_count += held[3 * (size_t)mesh->origin[h] + (size_t)k] == 1;
-        mean += gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) / mesh->face_degree[face];
+enum {
+    GPROJI_HELD_MOST = 64 /* vertices of a face that are looked at */
+};
+
+/* How far the held vertices of a face are from the plane that is normal to their area; *count: how many there are. */
+GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
+                                        int32_t *count) {
+    static const double none[3] = {0, 0, 0};
+    double offset[GPROJI_HELD_MOST][3], normal[3] = {0, 0, 0}, mean = 0, most = 0;
+    const double *first = NULL;
+    int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
+    for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
+        size_t v = 3 * (size_t)mesh->origin[h];
+        if (held[v] + held[v + 1] + held[v + 2] < 3) continue;
+        if (!first) first = value + v;
+        gproji_sub3(value + v, first, offset[held_count++]);
     }
-    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
-        most = gproji_fmax(most, fabs(gproji_dot3(normal, value + 3 * (size_t)mesh->origin[h]) - mean));
-    return held_count == 3 * mesh->face_degree[face] && most > noticeable;
+    *count = held_count;
+    for (k = 2; k < held_count; ++k) {
+        double area[3];
+        gproji_cross3(offset[k - 1], offset[k], area);
+        gproji_add_scaled3(1, area, normal);
+    }
+    if (held_count < 4 || !gproji_normalise3(normal, none)) return 0;
+    for (k = 0; k < held_count; ++k) mean += gproji_dot3(normal, offset[k]) / held_count;
+    for (k = 0; k < held_count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, offset[k]) - mean));
+    return most;
 }
 
-/* Says which faces cannot be flat because of fixed vertices, or that all are fixed. */
+/* Says which face cannot be flat because of vertices that are held, or that all are. */
 GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
+    static const double noticeable = 4; /* tolerances */
     size_t length = strlen(result->message);
-    double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1);
-    int32_t f, bent = 0, first = -1, count = gproji_find_held(form, held, value);
-    for (f = form->mesh->face_count - 1; gproji_is_on(form, form->planarity) && f >= 0; --f) {
-        if (!gproji_is_held_bent(form->mesh, held, value, f)) continue;
-        first = f;
+    double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
+    int32_t f, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
+    for (f = 0; gproji_is_on(form, form->planarity) && f < form->mesh->face_count; ++f) {
+        int32_t count;
+        double bend = gproji_held_bend(form->mesh, held, value, f, &count);
+        if (!(bend > noticeable * result->tolerance)) continue;
         ++bent;
+        if (bend > worst) worst = bend, face = f, corners = count;
     }
     if (bent > 0)
-        gproji_format(
-            result->message + length, sizeof result->message - length,
-            "; face %d cannot become flat, because all of its vertices are fixed%s: let one of them go, or glide",
-            first, bent > 1 ? ", and others, too" : "");
-    else if (count == form->mesh->vertex_count)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; face %d cannot become flat, because %d of its vertices are held, %g mean edges off a plane%s: "
+                      "let one of them go%s",
+                      face, corners, worst, bent > 1 ? ", and others likewise" : "",
+                      worst < 1e-6 ? ", or set a larger tolerance" : "");
+    else if (all == form->mesh->vertex_count)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
 }

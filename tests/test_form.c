@@ -1054,7 +1054,8 @@ GPROJT_TEST(faces_held_bent_are_named) {
     result = gproj_solve(form, 20, NULL);
     snprintf(words, sizeof words, "face %d cannot become flat", (int)face);
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, words));
-    GPROJT_CHECK(!strstr(result.message, "and others"));
+    GPROJT_CHECK(strstr(result.message, "because 4 of its vertices are held, ") &&
+                 !strstr(result.message, "and others"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
@@ -1074,6 +1075,46 @@ GPROJT_TEST(triangles_held_are_not_named) {
     GPROJT_CHECK(strstr(result.message, "and others") != NULL);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+}
+
+/* Corners of a gliding boundary are held as well; of more than four vertices the free ones do not matter; and a bend that is
+   rounding says that a tolerance would do. */
+GPROJT_TEST(held_corners_are_counted) {
+    static const double bends[3] = {0.1, 1e-9, 0};
+    int k;
+    for (k = 0; k < 6; ++k) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
+        bool pentagon = k >= 3;
+        double bend = bends[k % 3];
+        gproj_form *form;
+        gproj_result result;
+        if (pentagon) {
+            static const int32_t face[5] = {0, 1, 2, 3, 4};
+            gprojt_soup soup;
+            int32_t v;
+            memset(&soup, 0, sizeof soup);
+            for (v = 0; v < 5; ++v) gprojt_add_vertex(&soup, cos(1.2 * v), sin(1.2 * v), 0);
+            gprojt_add_face(&soup, 5, face);
+            gproj_mesh_destroy(mesh);
+            mesh = gprojt_mesh_of(soup);
+        }
+        mesh->position[2] += bend; /* a square of the grid is bent as it is */
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        if (pentagon) {
+            static const int32_t fixed[4] = {0, 1, 2, 4};
+            gproj_add_fixed(form, 4, fixed, 1);
+        } else {
+            gproj_add_gliding_boundary(form, 1);
+        }
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK((result.outcome != GPROJ_CONVERGED) == (bend > 0 || !pentagon));
+        GPROJT_CHECK(!strstr(result.message, "face 0 cannot become flat, because 4 of its vertices") ==
+                     (bend == 0 && pentagon));
+        GPROJT_CHECK(!strstr(result.message, "set a larger tolerance") == (bend != 1e-9 || !pentagon));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 GPROJT_TEST(gauss_fairness_needs_planarity) {
@@ -2301,6 +2342,7 @@ int main(void) {
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(triangles_held_are_not_named);
+    GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);
