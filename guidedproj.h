@@ -15492,7 +15492,7 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     left = polygon->count, least = -polygon->tolerance;
     for (i = 0; left > 3 && i < left && convex; ++i) {
         convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
-                 (i == 0 || i - 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
+                 (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
     }
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;

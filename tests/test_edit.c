@@ -496,8 +496,8 @@ GPROJT_TEST(split_and_collapse_is_nothing) {
     }
 }
 
-/* Each edge of each shape, alone: a split leaves the first corners of faces and the first edges of vertices where they
-   were; a collapsed edge is no more, and the numbers of its ends stand for the vertex that is left. */
+/* Each edge of each shape, alone: a split leaves the first corners of faces where they were; a collapsed edge is no more,
+   and the numbers of its ends stand for the vertex that is left. */
 GPROJT_TEST(each_edge_by_itself) {
     int32_t collapsed = 0;
     int shape;

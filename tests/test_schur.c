@@ -337,7 +337,7 @@ GPROJT_TEST(steps_are_those_of_the_dense_matrix) {
     for (i = 0; i < GPROJT_CASES; ++i) gprojt_check_case(&gprojt_cases[i]);
 }
 
-/* Elements enough for several tasks: each one adds its part once, and the step is where the gradient ends. */
+/* Elements enough for several tasks: the metric is that of all of them, and the step leaves no gradient. */
 GPROJT_TEST(steps_of_many_elements) {
     static const int32_t sizes[2] = {33, 41};
     const double epsilon = 1e-3;
