@@ -23368,11 +23368,12 @@ enum {
     GPROJI_HELD_MOST = 64 /* vertices of a face that are looked at */
 };
 
-/* How far the held vertices of a face are from the plane that is normal to their area; *count: how many there are. */
+/* How far the held vertices of a face are from the plane that is normal to their area; *count: how many there are. 0 if
+   the area is small beside the distances: rounding would turn the normal of vertices along a line. */
 GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
                                         int32_t *count) {
     static const double none[3] = {0, 0, 0};
-    double offset[GPROJI_HELD_MOST][3], normal[3] = {0, 0, 0}, mean = 0, most = 0;
+    double offset[GPROJI_HELD_MOST][3], normal[3] = {0, 0, 0}, squares = 0, mean = 0, most = 0;
     const double *first = NULL;
     int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
     for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
@@ -23386,23 +23387,25 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
         double area[3];
         gproji_cross3(offset[k - 1], offset[k], area);
         gproji_add_scaled3(1, area, normal);
+        squares += gproji_dot3(offset[k], offset[k]);
     }
-    if (held_count < 4 || !gproji_normalise3(normal, none)) return 0;
+    if (held_count < 4 || gproji_length3(normal) < 0.01 * squares || !gproji_normalise3(normal, none)) return 0;
     for (k = 0; k < held_count; ++k) mean += gproji_dot3(normal, offset[k]) / held_count;
     for (k = 0; k < held_count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, offset[k]) - mean));
     return most;
 }
 
-/* Says which face cannot be flat because of vertices that are held, or that all are. */
+/* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
+   would not explain it. */
 GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
-    static const double noticeable = 4; /* tolerances */
+    double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
     int32_t f, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
     for (f = 0; gproji_is_on(form, form->planarity) && f < form->mesh->face_count; ++f) {
         int32_t count;
         double bend = gproji_held_bend(form->mesh, held, value, f, &count);
-        if (!(bend > noticeable * result->tolerance)) continue;
+        if (!(bend > noticeable)) continue;
         ++bent;
         if (bend > worst) worst = bend, face = f, corners = count;
     }

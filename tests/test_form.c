@@ -1077,44 +1077,55 @@ GPROJT_TEST(triangles_held_are_not_named) {
     gproj_mesh_destroy(mesh);
 }
 
-/* Corners of a gliding boundary are held as well; of more than four vertices the free ones do not matter; and a bend that is
-   rounding says that a tolerance would do. */
+/* One face with these places, planar; the first vertex is `bend` higher. */
+static gproj_form *gprojt_one_face(int32_t degree, const double (*place)[3], double bend, gproj_mesh **mesh) {
+    static const int32_t corner[6] = {0, 1, 2, 3, 4, 5};
+    gprojt_soup soup;
+    gproj_form *form;
+    int32_t v;
+    memset(&soup, 0, sizeof soup);
+    for (v = 0; v < degree; ++v) gprojt_add_vertex(&soup, place[v][0], place[v][1], place[v][2] + (v ? 0 : bend));
+    gprojt_add_face(&soup, degree, corner);
+    *mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(*mesh, NULL);
+    gproj_add_planarity(form, 1);
+    return form;
+}
+
+/* Corners of a gliding boundary are held as well; of more than four vertices the free ones do not matter; a bend that is
+   rounding says that a larger tolerance would do; and vertices along a line are no obstacle, though they have no normal. */
 GPROJT_TEST(held_corners_are_counted) {
+    static const double place[5][3] = {{0, 0, 0}, {1, 0, 0}, {1.3, 1, 0}, {0.5, 1.5, 0}, {0, 1, 0}};
+    double row[6][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 5, 3}, {-1, 3, 2}};
     static const double bends[3] = {0.1, 1e-9, 0};
+    static const int32_t fixed[4] = {0, 1, 2, 4}, chain[4] = {0, 1, 2, 3};
+    gproj_result result;
+    gproj_mesh *mesh;
+    gproj_form *form;
     int k;
     for (k = 0; k < 6; ++k) {
-        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
-        bool pentagon = k >= 3;
         double bend = bends[k % 3];
-        gproj_form *form;
-        gproj_result result;
-        if (pentagon) {
-            static const int32_t face[5] = {0, 1, 2, 3, 4};
-            gprojt_soup soup;
-            int32_t v;
-            memset(&soup, 0, sizeof soup);
-            for (v = 0; v < 5; ++v) gprojt_add_vertex(&soup, cos(1.2 * v), sin(1.2 * v), 0);
-            gprojt_add_face(&soup, 5, face);
-            gproj_mesh_destroy(mesh);
-            mesh = gprojt_mesh_of(soup);
-        }
-        mesh->position[2] += bend; /* a square of the grid is bent as it is */
-        form = gproj_form_create(mesh, NULL);
-        gproj_add_planarity(form, 1);
-        if (pentagon) {
-            static const int32_t fixed[4] = {0, 1, 2, 4};
+        form = gprojt_one_face(k < 3 ? 5 : 4, place, bend, &mesh);
+        if (k < 3)
             gproj_add_fixed(form, 4, fixed, 1);
-        } else {
+        else
             gproj_add_gliding_boundary(form, 1);
-        }
         result = gproj_solve(form, 20, NULL);
-        GPROJT_CHECK((result.outcome != GPROJ_CONVERGED) == (bend > 0 || !pentagon));
-        GPROJT_CHECK(!strstr(result.message, "face 0 cannot become flat, because 4 of its vertices") ==
-                     (bend == 0 && pentagon));
-        GPROJT_CHECK(!strstr(result.message, "set a larger tolerance") == (bend != 1e-9 || !pentagon));
+        GPROJT_CHECK((result.outcome != GPROJ_CONVERGED) == (bend > 0));
+        GPROJT_CHECK(!strstr(result.message, "face 0 cannot become flat, because 4 of its vertices are held") ==
+                     (bend == 0));
+        GPROJT_CHECK(!strstr(result.message, "set a larger tolerance") == (bend != 1e-9));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+    for (k = 0; k < 4; ++k) row[k][0] = sqrt(k) / 7, row[k][1] = sqrt(k) / 3, row[k][2] = sqrt(k) / 1.1;
+    form = gprojt_one_face(6, (const double(*)[3])row, 0, &mesh);
+    gproj_add_fixed(form, 4, chain, 1);
+    gproj_add_length_bounds(form, mesh->edge_count, NULL, 9, HUGE_VAL, 1);
+    result = gproj_solve(form, 20, NULL);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && !strstr(result.message, "cannot become flat"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 GPROJT_TEST(gauss_fairness_needs_planarity) {

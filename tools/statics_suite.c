@@ -158,7 +158,7 @@ static void run_case(gproj_mesh *mesh, double *original, const suite_case *what,
         if (end.spoiled) printf(", %d places spoiled", (int)end.spoiled);
     } else if (strstr(end.result.message, "cannot become flat")) {
         ++count->certified;
-        printf("certified: a face whose vertices are fixed cannot become flat");
+        printf("certified: a face whose vertices are held cannot become flat");
     } else {
         bool minimum;
         best = best_of_disturbed(mesh, original, what, paper);
