@@ -1060,10 +1060,11 @@ GPROJT_TEST(faces_held_bent_are_named) {
     gproj_mesh_destroy(mesh);
 }
 
-/* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the first is named. */
+/* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
+   bent more is named. */
 GPROJT_TEST(triangles_held_are_not_named) {
     static const double p[42] = {0, 0, 0, 0, 0, 1,   0, 0, 3, 5, 0, 0,   6, 0, 0.5, 6, 1, 0, 5, 1, 0.5,
-                                 8, 0, 0, 9, 0, 0.5, 9, 1, 0, 8, 1, 0.5, 1, 0, 0,   2, 0, 0, 1, 1, 1};
+                                 8, 0, 0, 9, 0, 0.7, 9, 1, 0, 8, 1, 0.7, 1, 0, 0,   2, 0, 0, 1, 1, 1};
     static const int32_t degree[4] = {3, 4, 4, 3}, corner[14] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13};
     gproj_mesh *mesh = gproj_mesh_create(14, p, 4, degree, corner, NULL, NULL);
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -1071,7 +1072,7 @@ GPROJT_TEST(triangles_held_are_not_named) {
     gproj_add_planarity(form, 1);
     gproj_add_fixed(form, mesh->vertex_count, NULL, 1);
     result = gproj_solve(form, 10, NULL);
-    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "face 1 cannot become flat"));
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "face 2 cannot become flat"));
     GPROJT_CHECK(strstr(result.message, "and others") != NULL);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
@@ -1114,7 +1115,7 @@ GPROJT_TEST(held_corners_are_counted) {
         GPROJT_CHECK((result.outcome != GPROJ_CONVERGED) == (bend > 0));
         GPROJT_CHECK(!strstr(result.message, "face 0 cannot become flat, because 4 of its vertices are held") ==
                      (bend == 0));
-        GPROJT_CHECK(!strstr(result.message, "set a larger tolerance") == (bend != 1e-9));
+        GPROJT_CHECK(!strstr(result.message, "set a larger tolerance") == (k % 3 != 1));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
