@@ -10705,9 +10705,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
    so they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the
    agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or
-   falls short. Once it is small near a solution the metric rests and the last steps are Newton's; if these fail, the
-   metric comes back and becomes smaller before it rests again. A metric that is a brake (in a form: changes of forces)
-   acts with k (k - 1) instead, so only for k > 1, when steps fail.
+   falls short. Once it is small near a solution the metric rests and the last steps are Newton's. A metric that is a
+   brake (in a form: changes of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
    are, while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The
@@ -10735,7 +10734,6 @@ static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
-static const double gproji_stiffness_fine = 1e-5; /* and the lowest bound, where steps fail without stiffness */
 static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffer steps are no help */
 static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
@@ -10805,10 +10803,9 @@ typedef struct gproji_loop {
     double agreement;  /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     bool factored;     /* the last attempt found a step, whether good or not */
     bool failed;       /* an attempt of this iteration was not good */
-    double stiffness_least; /* below it the metric rests: gproji_stiffness_least, less if steps fail then */
-    int32_t wary;           /* iterations in which the stiffness does not fall fast */
-    double shift;           /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    int32_t wary;      /* iterations in which the stiffness does not fall fast */
+    double shift;      /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum;      /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
@@ -11513,11 +11510,11 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     loop->wary = loop->failed || is_short ? GPROJI_WARY : gproji_max(0, loop->wary - 1);
     loop->failed = false;
     stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
-    if (stiffness >= loop->stiffness_least)
+    if (stiffness >= gproji_stiffness_least)
         gproji_stiffen(loop, stiffness);
     else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
              (factor > 1 && loop->standing.residual > gproji_stiffness_ends))
-        gproji_stiffen(loop, loop->stiffness_least);
+        gproji_stiffen(loop, gproji_stiffness_least);
     else if (s->stiffness > 0) { /* the metric rests: then steps are found by multipliers, if that pays */
         gproji_stiffen(loop, 0);
         for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].role >= GPROJI_METRIC;
@@ -11553,12 +11550,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         /* Stiffer steps, or a larger eps if stiffness is no help. */
         if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
             loop->failed = true;
-            if (s->stiffness > 0) {
-                gproji_stiffen(loop, (s->stiffness < gproji_stiffness_least ? 10 : 3) * s->stiffness);
-            } else { /* the metric rested too early: from now on it becomes smaller before */
-                gproji_stiffen(loop, loop->stiffness_least);
-                loop->stiffness_least = gproji_fmax(0.1 * loop->stiffness_least, gproji_stiffness_fine);
-            }
+            gproji_stiffen(loop, gproji_fmax(3 * s->stiffness, gproji_stiffness_least));
         } else {
             epsilon *= 10;
         }
@@ -12251,7 +12243,6 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->iterations = iterations;
     loop->time.frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
-    loop->stiffness_least = gproji_stiffness_least;
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->result.spoiled.element = -1;
     loop->result.attempts = 1;
@@ -12554,7 +12545,6 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_bool(stream, &loop->minimum);
     gproji_pass_bool(stream, &loop->options.smooth);
     gproji_pass_bool(stream, &loop->stiff);
-    gproji_pass_double(stream, &loop->stiffness_least, gproji_stiffness_fine, gproji_stiffness_least);
     gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
     gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
