@@ -22620,6 +22620,7 @@ GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities,
 
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
     if (!form || !form->statics || edge < 0 || edge >= form->mesh->edge_count) return -1;
+    if (form->statics->group < 0) return -1; /* equilibrium could not be added */
     return form->statics->force[edge];
 }
 

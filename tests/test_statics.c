@@ -1729,6 +1729,7 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     for (i = 0; i < mesh->edge_count; ++i) density[i] = 1;
     loads.edge_density = density, loads.point_load = f, loads.snow = 1, loads.area_load = 1;
     form = gprojt_pinned_form(mesh, host, &loads);
+    GPROJT_CHECK(gproj_force_variable(form, 0) >= -1);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_add_tension(form, 0, &none, 1);
     gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
