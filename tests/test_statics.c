@@ -1724,12 +1724,13 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     gproj_result result;
     gproj_error error;
     bool found, whole;
-    int32_t i, none = 0;
+    int32_t i, none = 0, carrying = 0;
     for (i = 0; i < mesh->vertex_count; ++i) f[3 * i + 2] = -1;
     for (i = 0; i < mesh->edge_count; ++i) density[i] = 1;
     loads.edge_density = density, loads.point_load = f, loads.snow = 1, loads.area_load = 1;
     form = gprojt_pinned_form(mesh, host, &loads);
-    GPROJT_CHECK(gproj_force_variable(form, 0) >= -1);
+    for (i = 0; i < mesh->edge_count; ++i) carrying += gproj_force_variable(form, i) >= 0;
+    GPROJT_CHECK(carrying > 0 || !form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
     gproj_add_compression(form, mesh->edge_count, NULL, 1);
     gproj_add_tension(form, 0, &none, 1);
     gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
