@@ -209,6 +209,7 @@ static void gprojt_check_holds(const gprojt_life *c, const gproj_result *result)
     for (g = 0; g < gproj_system_group_count(s); ++g) {
         gproj_group_info info = gproj_system_group_info(s, g);
         if (info.kind == GPROJ_WISH || !(gprojt_inside_weight(c->form, g) > 0)) continue;
+        if (gprojt_inside_is_safeguard(c->form, g)) continue; /* with a coarse tolerance it may still act at the end */
         for (r = 0; r < info.rows; ++r) {
             double phi = gproj_system_row_value(s, g, r, gradient), size = fabs(phi);
             if (!(gprojt_inside_row_weight(c->form, g, r) > 0)) continue;

@@ -19,6 +19,9 @@ double gprojt_inside_weight(const gproj_form *form, int32_t group) { return form
 double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t row) {
     return form->system->group[group].row[row].weight;
 }
+bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group) {
+    return form->system->group[group].role >= GPROJI_GUARD;
+}
 
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { return gproji_ends_better(a, b); }
 

@@ -23,6 +23,8 @@ double gprojt_inside_load_scale(const gproj_form *form);
 bool gprojt_inside_has_forces(const gproj_form *form);
 double gprojt_inside_weight(const gproj_form *form, int32_t group);
 double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t row);
+/* Is a group the solver's own, a safeguard or a metric, which is in no residual? */
+bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group);
 
 /* Is end a of an attempt better than b? */
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);
