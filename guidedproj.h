@@ -7934,6 +7934,7 @@ struct gproj_system {
     int32_t variable_count;
     gproj_progress progress;
     double stiffness; /* in steps: factor on the weights of metric groups; 0: they rest */
+    bool creeping;    /* this solve has come near to the end and then fallen slowly: see gproji_watch_fall */
     double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
@@ -10719,8 +10720,9 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need
    25 iterations without it need 9 (test_smooth).
 
-   A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound,
-   and is let go if no step is found with it: constraints come first, and the verdict tells the damage. */
+   A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound.
+   Where safeguards leave the last bit of a residual to fall slowly they may ask for less (gproji_creeps), and they are
+   let go if no step is found with them: constraints come first, and the verdict tells the damage. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
@@ -10738,6 +10740,8 @@ static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffe
 static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
 static const double gproji_shortest = 0.125;      /* part of a step whose local unknowns are settled */
+/* A residual below the first that keeps more than the second part of itself in so many iterations creeps. */
+static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
 enum {
     GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
     GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again with other active bounds */
@@ -10747,6 +10751,7 @@ enum {
     GPROJI_ACTIVATIONS = 4,     /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
     GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
+    GPROJI_CREEP_ITERATIONS = 6,
     GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
@@ -10799,6 +10804,8 @@ typedef struct gproji_loop {
     int32_t waited;       /* iterations since then */
     double
         epsilon_least; /* lower end of the eps that follows the residual: gproji_epsilon_min, less if steps fall short */
+    double fallen;     /* the residual when its fall was looked at last, */
+    int32_t fall_seen; /* and the iterations then */
     bool stiff;        /* metric groups have a weight in this solve */
     double agreement;  /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     bool factored;     /* the last attempt found a step, whether good or not */
@@ -11586,6 +11593,20 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
+/* Has this solve come near to its end, and then only crept nearer? Safeguards may ask for less then. */
+GPROJI_INTERNAL bool gproji_creeps(const gproj_system *s) { return s->creeping; }
+
+/* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
+   are patient: they are made where this one has ended badly. */
+GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
+    double residual = loop->standing.residual;
+    if (loop->result.iterations < loop->fall_seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
+    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->fallen)
+        loop->system->creeping = true;
+    loop->fallen = residual;
+    loop->fall_seen = loop->result.iterations;
+}
+
 /* Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back, counts the
    iterations since the wishes have faded. half: the last one of the first half. Errors stay in s->error. */
 GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
@@ -11666,6 +11687,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
+        gproji_watch_fall(loop);
         gproji_begin_iteration(loop, loop->result.iterations + 1, half);
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
@@ -12243,7 +12265,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->iterations = iterations;
     loop->time.frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
-    loop->best.residual = loop->best.merit = HUGE_VAL;
+    loop->best.residual = loop->best.merit = loop->fallen = HUGE_VAL;
     loop->result.spoiled.element = -1;
     loop->result.attempts = 1;
     gproji_error_clear(&refused);
@@ -12270,6 +12292,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
 GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
     s->progress.settling = 0;
+    s->creeping = false;
     if (loop->options.nearest) {
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
@@ -12547,6 +12570,9 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_bool(stream, &loop->stiff);
     gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
+    gproji_pass_bool(stream, &s->creeping);
+    gproji_pass_double(stream, &loop->fallen, 0, HUGE_VAL);
+    gproji_pass_integer(stream, &loop->fall_seen, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
@@ -12569,6 +12595,7 @@ static const double gproji_touch = 1e-6; /* bounds so near to their limit stay t
 /* Compiles the system for projections of `sides` columns at once. */
 GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     memset(&s->progress, 0, sizeof s->progress);
+    s->creeping = false;
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
@@ -22905,7 +22932,9 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    Corners and edges without a size at the beginning are let go.
 
    A row asks for no more than its corner or edge has when it is linearised, or a floor: they may shrink as far as they
-   must, but slowly, and a wish for more does not hold up the constraints.
+   must, but slowly, and a wish for more does not hold up the constraints. Many rows that must shrink still do: where the
+   constraints creep (gproji_creeps) all ask for their floors only. Far from the end that would be too early, for shapes
+   lose more there than they must.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22968,7 +22997,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     const gproji_corners *guard = gproji_corners_of(part);
     int32_t h = corner / 2, face = part->form->mesh->face[h], k, t;
     bool upright = corner % 2 != 0;
-    double m[3], area[3], has;
+    double floor = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
     gproji_corner_normal(part->form, x, x, face, m);
     if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
     gproji_corner_area(part->form->mesh, x, h, area);
@@ -22979,20 +23008,20 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
         }
-    return upright ? gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
-                   : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
+    if (gproji_creeps(part->form->system)) return floor;
+    return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), floor);
 }
 
 /* Likewise for an edge: which part of the squared length. */
 GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const double *x, int32_t edge, gproj_term *term) {
-    double length = gproji_corners_of(part)->length[edge], asked;
+    double length = gproji_corners_of(part)->length[edge], has, asked = gproji_edge_floor;
     int32_t k;
     for (k = 0; k < 3; ++k) { /* in the order of gproji_set_length_terms */
         term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
         term[3 * k + 2].a = -2 / (length * length);
     }
-    asked = gproji_fmin(gproji_edge_length(part->form->mesh, x, edge) / length, gproji_corner_wanted);
-    asked = gproji_fmax(asked, gproji_edge_floor);
+    has = gproji_edge_length(part->form->mesh, x, edge) / length;
+    if (!gproji_creeps(part->form->system)) asked = gproji_fmax(gproji_fmin(has, gproji_corner_wanted), asked);
     return asked * asked;
 }
 
@@ -24140,7 +24169,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstF", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstG", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
@@ -24290,7 +24319,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'F'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'G'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
