@@ -11008,37 +11008,30 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* max |x| over the variables in rows of constraints and bounds; `all` if there are none. */
-GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
-    double largest = 0;
+/* The caller's tolerance, or the residual that rounding allows at this x. */
+GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double tolerance, extent, named = -1;
+    bool large;
     int64_t l;
     int32_t i, r;
-    bool none = true;
-    for (i = 0; i < s->group_count; ++i) {
+    if (loop->options.tolerance > 0) return loop->options.tolerance;
+    /* 1. Rounding of single variables. A stray one that no constraint or bound names must not raise it. */
+    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    large = 8 * DBL_EPSILON * extent > 1e-11;
+    for (i = 0; large && i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const gproj_term *term = g->term + row->term;
             if (!(row->weight > 0)) continue;
-            none = false;
+            if (named < 0) named = 0;
             if (row->terms == 1 && term->j < 0 && fabs(term->a) == 1) continue; /* x_i + c is exact, however large */
             for (l = row->local; l < row[1].local; ++l)
-                largest = gproji_fmax(largest, fabs(s->x[g->local.variable[l]]));
+                named = gproji_fmax(named, fabs(s->x[g->local.variable[l]]));
         }
     }
-    return none ? all : largest;
-}
-
-/* The caller's tolerance, or the residual that rounding allows at this x. */
-GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    double tolerance, extent;
-    int32_t i, r;
-    if (loop->options.tolerance > 0) return loop->options.tolerance;
-    /* 1. Rounding of single variables. A stray one that no row names must not raise it. */
-    extent = gproji_pass_over(s, 0, gproji_extent_task);
-    if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * (named < 0 ? extent : named));
     /* 2. Rounding of long sums: the linear terms of global rows. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -11315,44 +11308,41 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
     return gproji_go(loop, 1, course);
 }
 
-/* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused,
-   but must lower it. 0: none. x is at the end of the full step, `none` the merit before. `bent`: a bend was tried. */
-GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course, bool *bent) {
-    gproj_system *s = loop->system;
-    double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
-    *bent = !s->schur.on && none - merit < gproji_bend_below * promised;
-    if (*bent) merit = gproji_bend_step(loop, course, merit);
-    loop->agreement = promised > 0 ? (none - merit) / promised : 1;
-    while (t > gproji_shortest &&
-           (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x))))
-        merit = gproji_go(loop, t /= 2, course);
-    return merit <= none ? t : 0;
-}
-
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
 GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    gproji_course merit;
-    double none, full, t;
-    bool bent = false;
+    gproji_course course;
+    double none, merit, promised, t;
     loop->agreement = 1;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
-    gproji_merit_along(s, &merit);
-    none = gproji_merit_at(&merit, 0);
+    gproji_merit_along(s, &course);
+    none = gproji_merit_at(&course, 0);
+    promised = none - course.model;
     if (loop->hooks.settle) {
-        t = gproji_backtrack(loop, none, &merit, &bent);
+        /* x is at the end of the full step. Bends it if the linearised rows promised more; then halves it while it
+           raises the true merit or is refused. The shortest part may be refused, but must lower the merit. */
+        bool bent;
+        merit = gproji_arrive(loop, 1, &course);
+        bent = !s->schur.on && none - merit < gproji_bend_below * promised;
+        if (bent) merit = gproji_bend_step(loop, &course, merit);
+        loop->agreement = promised > 0 ? (none - merit) / promised : 1;
+        for (t = 1;
+             t > gproji_shortest &&
+             (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)));)
+            merit = gproji_go(loop, t /= 2, &course);
+        if (!(merit <= none)) return 0;
         if (t < 1 || bent) return t; /* the merit along the straight step says nothing of a bent one */
     } else {
-        full = gproji_merit_at(&merit, 1);
-        if (!(full <= DBL_MAX)) return 0;
-        loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
-        if (full > none) {
-            t = gproji_minimise_merit(&merit, 0.05, 1);
-            return gproji_merit_at(&merit, t) < none ? t : 0;
+        merit = gproji_merit_at(&course, 1);
+        if (!(merit <= DBL_MAX)) return 0;
+        loop->agreement = none > course.model ? (none - merit) / promised : 1;
+        if (merit > none) {
+            t = gproji_minimise_merit(&course, 0.05, 1);
+            return gproji_merit_at(&course, t) < none ? t : 0;
         }
     }
     if (gproji_wishes_are_on(s) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_merit(&merit, 0.1, 2);
+    t = gproji_minimise_merit(&course, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
 
@@ -11459,25 +11449,6 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
     return false;
 }
 
-/* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
-GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
-    gproj_system *s = loop->system;
-    bool good;
-    loop->iteration.epsilon = epsilon;
-    loop->factored = gproji_find_bounded_step(loop, epsilon);
-    loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
-    good = loop->iteration.length > 0;
-    if (!good)
-        gproji_step_back(s);
-    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) { /* else x is there */
-        loop->iteration.step = gproji_take_step(s, loop->iteration.length);
-        gproji_settle(loop);
-    }
-    if (!good && loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
-    gproji_lap(loop, GPROJ_PHASE_REFRESH);
-    return good;
-}
-
 /* Sets the stiffness of steps, x being the beginning of the next one. Metric groups that come back by that are
    compiled, if they are not, and linearised. */
 GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
@@ -11535,7 +11506,20 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     loop->iteration.factorisations = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
         double before = loop->standing.residual;
-        bool stepped = gproji_try_step(loop, epsilon);
+        bool stepped;
+        /* 1. The full step, and the good part of it: x is the new one, or the old one if there is none. */
+        loop->iteration.epsilon = epsilon;
+        loop->factored = gproji_find_bounded_step(loop, epsilon);
+        loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
+        stepped = loop->iteration.length > 0;
+        if (!stepped) {
+            gproji_step_back(s);
+            if (loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
+        } else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) {
+            loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+            gproji_settle(loop);
+        } /* else x is there */
+        gproji_lap(loop, GPROJ_PHASE_REFRESH);
         if (stepped) gproji_linearise(loop);
         if (stepped && loop->standing.merit <= DBL_MAX) {
             if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
@@ -11547,7 +11531,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_linearise(loop);
         }
         gproji_start_bounds(s);
-        /* Stiffer steps, or a larger eps if stiffness is no help. */
+        /* 2. Stiffer steps, or a larger eps if stiffness is no help. */
         if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
             loop->failed = true;
             gproji_stiffen(loop, gproji_fmax(3 * s->stiffness, gproji_stiffness_least));
@@ -11558,14 +11542,20 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     return false;
 }
 
-GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) {
-    loop->iteration.number = loop->earlier + number;
+/* Books iteration n and calls the caller's function, for which no phase is charged. False: stop. */
+GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
+    bool go_on = true;
+    loop->iteration.number = loop->earlier + n;
     loop->iteration.residual = loop->standing.residual;
     loop->iteration.merit = loop->standing.merit;
     loop->iteration.energy = loop->standing.energy;
-    loop->result.iterations = number;
+    loop->result.iterations = n;
     loop->result.damped += loop->iteration.factorisations > 1 || loop->iteration.length < 1;
     loop->result.step = loop->iteration.step;
+    if (loop->options.on_iteration)
+        go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
+    loop->time.lap = gproji_now(loop->system);
+    return go_on;
 }
 
 /* Do the constraints hold? */
@@ -11584,31 +11574,6 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     spent = gproji_now(loop->system) - loop->time.started;
     loop->paused = !(spent + spent / taken < loop->time.frame);
     return loop->paused;
-}
-
-/* Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back, counts the
-   iterations since the wishes have faded. half: the last one of the first half. Errors stay in s->error. */
-GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
-    gproj_system *s = loop->system;
-    memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-    s->progress.iteration = n, s->progress.iterations = loop->iterations;
-    gproji_place_woken(loop, gproji_wake_guard(s));
-    if (s->error.code != GPROJ_OK) return;
-    if (gproji_set_weights(loop, n)) gproji_linearise(loop);
-    s->progress.settling =
-        n <= half && (gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled))
-            ? 0
-            : s->progress.settling + 1;
-    loop->standing = gproji_take_standing(s);
-}
-
-/* Calls the caller's function; no phase is charged for it. False: stop. */
-GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
-    bool go_on = true;
-    if (loop->options.on_iteration)
-        go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
-    loop->time.lap = gproji_now(loop->system);
-    return go_on;
 }
 
 /* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether
@@ -11661,13 +11626,24 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST);
-    bool better;
+    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST), n;
+    bool guided, better;
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
-        gproji_begin_iteration(loop, loop->result.iterations + 1, half);
+        /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
+           counts the iterations since the wishes have faded. */
+        n = loop->result.iterations + 1;
+        memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+        s->progress.iteration = n, s->progress.iterations = loop->iterations;
+        gproji_place_woken(loop, gproji_wake_guard(s));
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+        if (gproji_set_weights(loop, n)) gproji_linearise(loop);
+        guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled);
+        s->progress.settling = n <= half && guided ? 0 : s->progress.settling + 1;
+        loop->standing = gproji_take_standing(s);
+        if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+        /* 2. The step, unless all is done. */
         if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
                                    (loop->result.iterations > 0 && loop->result.step <= loop->tolerance)))
             return GPROJ_CONVERGED;
@@ -11675,13 +11651,12 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (!gproji_iterate(loop)) {
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             if (gproji_holds(loop)) return GPROJ_CONVERGED;
-            if (!gproji_leave_out(loop, loop->result.iterations + 1) && !gproji_release_safeguards(loop))
-                return GPROJ_STALLED;
+            if (!gproji_leave_out(loop, n) && !gproji_release_safeguards(loop)) return GPROJ_STALLED;
             continue;
         }
         gproji_adapt_stiffness(loop);
-        gproji_report_iteration(loop, loop->result.iterations + 1);
-        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
+        if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
+        /* 3. Progress, or the end of patience. */
         if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
         better = loop->standing.residual < 0.9 * loop->best.residual || loop->standing.merit < 0.6 * loop->best.merit;
         if (better || gproji_wishes_are_on(s)) loop->waited = -1; /* progress, or none to be judged yet */
@@ -11691,23 +11666,6 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
             return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
-}
-
-/* The wish with the most energy that acts to the end; -1: none, or it fades by itself. */
-GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
-    double most = 0;
-    int32_t wish = -1, g, k;
-    for (g = 0; g < s->group_count; ++g) {
-        const gproji_group *group = &s->group[g];
-        bool decays = group->schedule.decay > 0 && group->schedule.decay < 1;
-        double energy = 0;
-        if (group->kind != GPROJ_WISH || !gproji_group_counts(group) || decays) continue;
-        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally.part[k].sum;
-        if (!(energy > most)) continue;
-        most = energy;
-        wish = g;
-    }
-    return wish;
 }
 
 /* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad
@@ -11738,18 +11696,24 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
-    double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance;
-    int32_t second = -1, wish = gproji_lasting_wish(s), k;
-    bool guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0, balanced;
+    double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
+    int32_t second = -1, wish = -1, i, k;
+    bool guided, balanced;
     more[0] = 0;
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
-    balanced = guided && gproji_constraints_balance(s);
-    for (k = 0; k < s->group_count; ++k) { /* the other group that must hold with the largest residual */
-        double max = gproj_system_group_info(s, k).max;
-        if (k == loop->standing.group || !gproji_must_hold(&s->group[k]) || max <= largest) continue;
-        largest = max;
-        second = k;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *other = &s->group[i];
+        bool decays = other->schedule.decay > 0 && other->schedule.decay < 1;
+        bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !decays;
+        double max = gproj_system_group_info(s, i).max, energy = 0;
+        /* 1. The wish with the most energy among those that act to the end and do not fade by themselves. */
+        for (k = 0; lasts && k < gproji_group_tasks(other); ++k) energy += other->tally.part[k].sum;
+        if (energy > most) most = energy, wish = i;
+        /* 2. The other group that must hold with the largest residual. */
+        if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
+    guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
+    balanced = guided && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
         gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
@@ -12107,18 +12071,21 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by row. The
-   least over all y would be the norm of the gradient projected to the tangent space of the constraints. */
-GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
-    double wishes = 0, left = 0;
+/* For rows seen with the weights of slides: optimality, and energies as the schedules weigh them. */
+GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double wishes = 0, left = 0, factor = 1, scale = gproji_nearest_scale, optimality;
     int64_t l;
     int32_t i, r, rows = 0;
+    /* 1. The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by
+       row. The least over all y would be the norm of the gradient projected to the constraints' tangent space. */
     memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
+        bool wish = g->kind == GPROJ_WISH;
+        if (wish && g->weight > 0) factor = g->schedule.weight / g->weight;
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            bool wish = g->kind == GPROJ_WISH;
             double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
             gproji_row_add(g, row, pull, s->vector.gradient);
             rows += wish;
@@ -12127,21 +12094,12 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
         }
     }
     for (i = 0; i < s->variable_count; ++i) left += s->vector.gradient[i] * s->vector.gradient[i];
-    if (rows == 0) return 0;
-    if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX)) return HUGE_VAL;
-    return sqrt(left / gproji_fmax(wishes, 1e-12 * gproji_nearest_scale * gproji_nearest_scale * gproji_nearest_scale *
-                                               gproji_nearest_scale * (1 + (double)rows)));
-}
-
-/* Optimality, and energies as the schedules weigh them, for rows seen with the weights of slides. */
-GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    double factor = 1;
-    int32_t i;
-    loop->iteration.optimality = loop->result.optimality = gproji_optimality(s);
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0)
-            factor = s->group[i].schedule.weight / s->group[i].weight;
+    if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX))
+        optimality = HUGE_VAL;
+    else
+        optimality = sqrt(left / gproji_fmax(wishes, 1e-12 * scale * scale * scale * scale * (1 + (double)rows)));
+    loop->iteration.optimality = loop->result.optimality = rows == 0 ? 0 : optimality;
+    /* 2. Wishes are scaled, all by the same factor. */
     loop->standing.merit += loop->standing.energy * (factor * factor - 1);
     loop->standing.energy *= factor * factor;
 }
@@ -12198,8 +12156,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
         if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
         gproji_see_nearest(loop);
-        gproji_report_iteration(loop, n);
-        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
+        if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         if (s->changed) gproji_see_nearest(loop);
     }
     if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
@@ -12266,35 +12223,29 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     return false;
 }
 
-/* The first run begins. */
-GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    s->progress.settling = 0;
-    if (loop->options.nearest) {
-        if (!gproji_start_multipliers(s)) {
-            gproji_fail_memory(&s->error);
-            return;
-        }
-        gproji_see_nearest(loop);
-    } else {
-        gproji_set_weights(loop, 1);
-        gproji_linearise(loop);
-    }
-    gproji_start_bounds(s);
-    loop->begun = true;
-}
-
-/* A further run begins, with all changes since the last one. */
-GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
+/* Begins the first run, or a further one with all changes since the last. */
+GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->progress.tangential = nearest;
-    if (nearest && !s->vector.sum) { /* a solve of the system in between has taken them */
+    if (nearest && (!loop->begun || !s->vector.sum)) { /* a solve of the system in between may have taken them */
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
             return;
         }
         changed = true;
+    }
+    if (!loop->begun) {
+        s->progress.settling = 0;
+        if (nearest) {
+            gproji_see_nearest(loop);
+        } else {
+            gproji_set_weights(loop, 1);
+            gproji_linearise(loop);
+        }
+        gproji_start_bounds(s);
+        loop->begun = true;
+        return;
     }
     if (loop->restored || !s->evaluated) gproji_see_rows(loop);
     if (loop->restored && nearest) gproji_judge_nearest(loop);
@@ -12336,10 +12287,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
     if (gproji_compile(s, loop->options.nearest) == GPROJ_OK) {
         gproji_lap(loop, GPROJ_PHASE_ANALYSE);
         s->solving = true;
-        if (loop->begun)
-            gproji_resume_loop(loop);
-        else
-            gproji_start_loop(loop);
+        gproji_begin_run(loop);
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
         s->solving = s->progress.tangential = false;
         loop->time.spent += loop->time.lap - loop->time.started;
