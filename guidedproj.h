@@ -11736,30 +11736,44 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       g->name);
 }
 
-/* Writes the verdict in a sentence: outcome, worst row, obstacle, advice. */
+/* Writes the verdict in a sentence: outcome, worst row, obstacle, advice; or how near the nearest is. */
 GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
-    const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
-    const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
+    const gproji_group *g = standing->group >= 0 ? &loop->system->group[standing->group] : NULL;
     int32_t iterations = loop->earlier + r->iterations;
-    const char *plural = iterations == 1 ? "" : "s";
-    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE];
+    const char *plural = iterations == 1 ? "" : "s", *ending = "";
+    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE], figure[64];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
     r->worst_element = g ? g->row[standing->row].element : -1;
-    if (!g) {
-        gproji_format(r->message, sizeof r->message,
-                      "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
+    gproji_format(figure, sizeof figure, "projected gradient of the wishes %g", r->optimality);
+    if (g && loop->options.nearest && gproji_holds(loop)) {
+        if (r->outcome == GPROJ_CONVERGED) ending = ", at a minimum of the wishes";
+        if (r->outcome == GPROJ_ITERATION_LIMIT) ending = ", but more iterations would serve the wishes better";
+        if (r->outcome == GPROJ_STALLED) ending = ", and no step serves the wishes better";
+        if (r->outcome == GPROJ_CANCELLED) ending = ", cancelled by the caller";
+        if (r->outcome == GPROJ_TIME_OUT) ending = ", but the time budget ran out before a minimum of the wishes";
+        gproji_format(r->message, sizeof r->message, "%s%s: %d iteration%s, largest residual %g (%s), %s",
+                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name,
+                      figure);
         return;
     }
-    gproji_advise(loop, g, more, sizeof more);
-    element[0] = 0;
-    if (g->place != GPROJ_PLACE_NONE)
-        gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
-    gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
-                  gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+    if (g) {
+        gproji_advise(loop, g, more, sizeof more);
+        element[0] = 0;
+        if (g->place != GPROJ_PLACE_NONE)
+            gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
+        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
+                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+    } else {
+        gproji_format(r->message, sizeof r->message,
+                      "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
+    }
+    if (!loop->options.nearest) return;
+    gproji_append(r->message, sizeof r->message, strlen(r->message), "; ", 2);
+    gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
 }
 
 /* A result that carries an error's sentence. */
@@ -12163,27 +12177,6 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     return gproji_is_nearest(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
 }
 
-/* Writes the verdict's sentence if the constraints hold, and how near the nearest is. */
-GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
-    gproj_result *r = &loop->result;
-    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
-    char figure[64];
-    if (!gproji_holds(loop) || r->worst_group < 0) {
-        gproji_format(figure, sizeof figure, "; projected gradient of the wishes %g", r->optimality);
-        gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
-        return;
-    }
-    if (r->outcome == GPROJ_CONVERGED) more = ", at a minimum of the wishes";
-    if (r->outcome == GPROJ_ITERATION_LIMIT) more = ", but more iterations would serve the wishes better";
-    if (r->outcome == GPROJ_STALLED) more = ", and no step serves the wishes better";
-    if (r->outcome == GPROJ_CANCELLED) more = ", cancelled by the caller";
-    if (r->outcome == GPROJ_TIME_OUT) more = ", but the time budget ran out before a minimum of the wishes";
-    gproji_format(r->message, sizeof r->message,
-                  "%s%s: %d iteration%s, largest residual %g (%s), projected gradient of the wishes %g",
-                  gproji_outcome_string(GPROJ_CONVERGED), more, r->iterations, plural, r->residual,
-                  loop->system->group[r->worst_group].name, r->optimality);
-}
-
 /* -- runs: a solve, or a part of it -- */
 
 /* Makes a loop for a solve of this system. If that is refused the result says why: meaningless options are an error of
@@ -12298,7 +12291,6 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         return true;
     }
     gproji_write_verdict(loop);
-    if (loop->options.nearest) gproji_write_nearest_verdict(loop);
     return !loop->paused;
 }
 
@@ -13124,43 +13116,6 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     return object ? gproji_mesh_done(object, gproji_mesh_build(object, &soup, error)) : NULL;
 }
 
-/* Refuses arrays that are missing or given twice, and strides that are too short. */
-GPROJI_INTERNAL gproj_code gproji_check_data(const gproj_mesh_data *data, gproj_error *error) {
-    const char *wrong = NULL;
-    size_t least;
-    if (!data) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: there are none");
-    least = 3 * (data->position ? sizeof(double) : sizeof(float));
-    if ((data->position != NULL) == (data->float_position != NULL))
-        wrong = "one of position and float_position is needed, and not both";
-    else if (data->position_stride && data->position_stride < least)
-        wrong = "position_stride is less than three numbers have";
-    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
-        wrong = "either face_vertex or short_face_vertex is needed";
-    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
-        wrong = "either face_degree or degree is needed";
-    if (wrong) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: %s", wrong);
-    return gproji_check_counts(data->vertex_count, data->face_count, error);
-}
-
-/* Copies the positions to 3 * vertex_count doubles. Strides may leave numbers at odd addresses: hence memcpy. */
-GPROJI_INTERNAL void gproji_copy_positions(const gproj_mesh_data *data, double *position) {
-    size_t size = data->position ? sizeof(double) : sizeof(float), stride = data->position_stride, v, k;
-    const char *from = data->position ? (const char *)data->position : (const char *)data->float_position;
-    if (stride == 0) stride = 3 * size;
-    for (v = 0; v < (size_t)data->vertex_count; ++v) {
-        for (k = 0; k < 3; ++k) {
-            const char *at = from + v * stride + k * size;
-            float number;
-            if (data->position) {
-                memcpy(&position[3 * v + k], at, size);
-                continue;
-            }
-            memcpy(&number, at, size);
-            position[3 * v + k] = number;
-        }
-    }
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
     gproji_heap heap = gproji_heap_of(host);
     gproji_pool pool;
@@ -13168,22 +13123,44 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     double *position;
     int32_t *degree, *vertex = NULL, f;
     int64_t corners = 0, k;
+    size_t size = data && data->position ? sizeof(double) : sizeof(float), stride;
+    const char *wrong = NULL, *from;
     gproj_code code;
+    /* 1. No array may be missing or given twice, and no stride too short. */
     gproji_error_clear(error);
-    if (gproji_check_data(data, error)) return NULL;
+    if (!data)
+        wrong = "there are none";
+    else if ((data->position != NULL) == (data->float_position != NULL))
+        wrong = "one of position and float_position is needed, and not both";
+    else if (data->position_stride && data->position_stride < 3 * size)
+        wrong = "position_stride is less than three numbers have";
+    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
+        wrong = "either face_vertex or short_face_vertex is needed";
+    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
+        wrong = "either face_degree or degree is needed";
+    if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
+    if (wrong || gproji_check_counts(data->vertex_count, data->face_count, error)) return NULL;
+    /* 2. Room, for as many corners as the degrees sum up to. */
     gproji_pool_start(&pool, &heap);
     position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
     degree = (int32_t *)gproji_pool_take(&pool, data->face_count, sizeof *degree);
     for (f = 0; degree && f < data->face_count; ++f)
         degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
     code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
-    if (code == GPROJ_OK) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
-    if (code == GPROJ_OK && !(position && vertex)) code = gproji_fail_memory(error);
-    if (code == GPROJ_OK) {
-        gproji_copy_positions(data, position);
-        for (k = 0; k < corners; ++k) vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
-        mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
+    if (!code) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
+    if (!code && !(position && vertex)) code = gproji_fail_memory(error);
+    /* 3. The mesh. Strides may leave numbers at odd addresses: hence memcpy. */
+    stride = data->position_stride ? data->position_stride : 3 * size;
+    from = data->position ? (const char *)data->position : (const char *)data->float_position;
+    for (k = 0; !code && k < 3 * (int64_t)data->vertex_count; ++k) {
+        const char *at = from + (size_t)(k / 3) * stride + (size_t)(k % 3) * size;
+        float number = 0;
+        memcpy(data->position ? (void *)&position[k] : (void *)&number, at, size);
+        if (!data->position) position[k] = number;
     }
+    for (k = 0; !code && k < corners; ++k)
+        vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+    if (!code) mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
     gproji_pool_give_all(&pool);
     return mesh;
 }
@@ -13430,19 +13407,18 @@ GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const 
 
 GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
 
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
-    old->exists = stat(path, &old->info) == 0;
-    old->regular = old->exists && S_ISREG(old->info.st_mode);
-}
-
-/* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+/* Follows symbolic links up to the name of the file itself, and looks whether there is one; false in a circle. */
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     char target[GPROJI_PATH_MAX];
     int32_t links;
     for (links = 0; links < GPROJI_LINKS_MAX; ++links) {
         ssize_t length = readlink(path, target, sizeof target);
         size_t folder = gproji_folder_length(path);
-        if (length <= 0) return true; /* no link */
+        if (length <= 0) { /* no link */
+            old->exists = stat(path, &old->info) == 0;
+            old->regular = old->exists && S_ISREG(old->info.st_mode);
+            return true;
+        }
         if (target[0] == '/') folder = 0;
         if (folder + (size_t)length >= GPROJI_PATH_MAX) return false;
         memcpy(path + folder, target, (size_t)length);
@@ -13540,12 +13516,14 @@ GPROJI_INTERNAL void gproji_file_remove(const char *path) {
     if (gproji_widen_path(&wide, path)) DeleteFileW(wide.text);
 }
 
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+/* Looks whether there is a file; MoveFileEx replaces a link itself. */
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     const unsigned long none = 0xffffffff, directory = 0x10, device = 0x40;
     gproji_wide_path wide;
     unsigned long attributes = gproji_widen_path(&wide, path) ? GetFileAttributesW(wide.text) : none;
     old->exists = attributes != none;
     old->regular = old->exists && !(attributes & (directory | device));
+    return true;
 }
 
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
@@ -13594,18 +13572,15 @@ GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const 
 GPROJI_INTERNAL void gproji_file_remove(const char *path) { remove(path); }
 
 /* Nobody can tell; a rename will. */
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     (void)path;
     old->exists = old->regular = false;
+    return true;
 }
 
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
 
 #endif /* GPROJI_FILES */
-
-#if GPROJI_FILES != 1 /* MoveFileEx replaces a link itself; plain C knows none */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) { return path != NULL; }
-#endif
 
 /* A save under way. */
 typedef struct gproji_saving {
@@ -13614,33 +13589,27 @@ typedef struct gproji_saving {
     char target[GPROJI_PATH_MAX], temporary[GPROJI_PATH_MAX];
 } gproji_saving;
 
-/* Makes a new file in the folder of the target. Names that differ between processes and threads save attempts. */
-GPROJI_INTERNAL bool gproji_create_temporary(gproji_saving *saving, const gproji_old_file *old) {
+/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
+GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
     uint32_t number = gproji_process_number() * 1664525 + (uint32_t)((uintptr_t)saving >> 4);
-    char *name = saving->temporary + saving->folder_length;
+    gproji_old_file old;
+    size_t length = strlen(path), folder;
     int32_t tries, digit;
-    memcpy(saving->temporary, saving->target, saving->folder_length);
+    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
+    memcpy(saving->target, path, length + 1);
+    if (!gproji_find_old(&old, saving->target)) return "its symbolic links lead in a circle, or too far";
+    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
+    folder = saving->folder_length = gproji_folder_length(saving->target);
+    if (folder + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
+    /* A new file beside it. Names that differ between processes and threads save attempts. */
+    memcpy(saving->temporary, saving->target, folder);
     for (tries = 0; tries < GPROJI_TEMPORARY_TRIES; ++tries) {
+        char *name = saving->temporary + folder;
         number = number * 1664525 + 1013904223; /* Knuth and Lewis */
         memcpy(name, "gproj-01234567.tmp", GPROJI_TEMPORARY_SIZE);
         for (digit = 0; digit < 8; ++digit) name[6 + digit] = "0123456789abcdef"[(number >> (28 - 4 * digit)) & 15];
-        if (gproji_file_create(&saving->file, saving->temporary, old)) return true;
+        if (gproji_file_create(&saving->file, saving->temporary, &old)) return NULL;
     }
-    return false;
-}
-
-/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
-GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
-    gproji_old_file old;
-    size_t length = strlen(path);
-    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
-    memcpy(saving->target, path, length + 1);
-    if (!gproji_follow_links(saving->target)) return "its symbolic links lead in a circle, or too far";
-    gproji_look_at_old(&old, saving->target);
-    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
-    saving->folder_length = gproji_folder_length(saving->target);
-    if (saving->folder_length + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
-    if (gproji_create_temporary(saving, &old)) return NULL;
     return "no file can be made in its folder; does that exist, and may you write there?";
 }
 
@@ -13937,20 +13906,6 @@ GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64
     return !reader->code;
 }
 
-/* Reads a vertex's line: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
-GPROJI_INTERNAL void gproji_off_vertex(gproji_reader *reader) {
-    double x[3] = {0, 0, 0};
-    int32_t k, line = reader->line;
-    for (k = 0; k < 3 && !reader->code; ++k) {
-        if (k && !gproji_next_word(reader))
-            gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
-        else
-            x[k] = gproji_word_number(reader);
-    }
-    gproji_next_line(reader);
-    gproji_push_vertex(reader, x, line);
-}
-
 /* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
 GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
     int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
@@ -13994,8 +13949,19 @@ GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
             gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "a count of %l %s", count[k], k ? "faces" : "vertices");
     }
     gproji_next_line(reader);
-    /* 3. Vertices, a line each. */
-    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) gproji_off_vertex(reader);
+    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
+    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) {
+        double x[3] = {0, 0, 0};
+        int32_t line = reader->line;
+        for (k = 0; k < 3 && !reader->code; ++k) {
+            if (k && !gproji_next_word(reader))
+                gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
+            else
+                x[k] = gproji_word_number(reader);
+        }
+        gproji_next_line(reader);
+        gproji_push_vertex(reader, x, line);
+    }
     /* 4. Faces: the degree, then the corners. */
     for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
         gproji_off_face(reader, i, count[1]);
@@ -14291,29 +14257,27 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
     }
 }
 
-GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const char *path, gproj_error *error) {
+GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object;
     char quote[GPROJI_PATH_QUOTE_SIZE];
     void *text = NULL;
     size_t capacity = 0, size = 0;
     gproj_code code;
     gproji_file file;
+    if (!gproji_given(path, "path to load from", error)) return NULL;
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
     if (!gproji_file_open(&file, path)) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+        code = gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                            "'%s' cannot be opened; does it exist, and may you read it?",
                            gproji_quote_path(path, quote));
+        return gproji_mesh_done(object, code);
     }
     code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
     gproji_file_close(&file);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
-    return code;
-}
-
-GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object;
-    if (!gproji_given(path, "path to load from", error)) return NULL;
-    object = gproji_mesh_begin(host, error);
-    return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
+    return gproji_mesh_done(object, code);
 }
 
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error) {
@@ -15776,14 +15740,6 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
 
 /* -- elements -- */
 
-/* Adds a vertex; the position is not set. */
-GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
-    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
-    s->count[GPROJI_EDIT_POSITION]++;
-    s->vertex_into[v] = v;
-    return v;
-}
-
 /* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     int32_t e = s->count[GPROJI_EDIT_EDGE]++;
@@ -15816,6 +15772,11 @@ GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outg
         if (h == outgoing) break;
     }
     s->vertex_halfedge[s->origin[h]] = h;
+}
+
+/* Does half-edge h have a face with so many corners? */
+GPROJI_INLINE bool gproji_edit_sees(const gproji_edit_store *s, int32_t h, int32_t degree) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == degree;
 }
 
 /* The half-edge in a face that starts at a vertex; -1: no corner is there. */
@@ -15914,8 +15875,10 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
    it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
     int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
+    s->count[GPROJI_EDIT_POSITION]++;
+    s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
     s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
     s->face[onward] = s->face[h], s->face[back] = s->face[g];
@@ -15974,34 +15937,25 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     return gproji_edit_divide(object, object->now.face[from], from, to, false);
 }
 
-/* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
-GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
-    int32_t f = s->face[other];
-    gproji_edit_insert(s, s->prev[other], h, s->next[other]);
-    s->face[h] = f;
-    if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
-    s->origin[other] = s->origin[other ^ 1] = -1;
-    s->edge_into[other / 2] = h / 2;
-}
-
 /* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at
    the vertex, and at *apex one at the third vertex of a triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
-    int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
+    int32_t f = s->face[h], x = s->next[h], y = s->prev[h], kept, gone;
     *apex = -1;
     s->next[y] = x, s->prev[x] = y;
     if (f < 0) return x;
     if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
     if (--s->face_degree[f] > 2) return x;
-    s->face_halfedge[f] = -1; /* a triangle: the two edges that are left merge into the lower number */
-    if (x < y) {
-        gproji_edit_replace(s, x, y ^ 1);
-        *apex = x ^ 1;
-        return x;
-    }
-    gproji_edit_replace(s, y, x ^ 1);
-    *apex = y;
-    return y ^ 1;
+    /* A triangle: the two edges that are left merge into the lower number, which takes the other's outer side. */
+    s->face_halfedge[f] = -1;
+    kept = gproji_min(x, y), gone = gproji_max(x, y) ^ 1;
+    f = s->face[kept] = s->face[gone];
+    gproji_edit_insert(s, s->prev[gone], kept, s->next[gone]);
+    if (f >= 0 && s->face_halfedge[f] == gone) s->face_halfedge[f] = kept;
+    s->origin[gone] = s->origin[gone ^ 1] = -1;
+    s->edge_into[gone / 2] = kept / 2;
+    *apex = kept == x ? x ^ 1 : y;
+    return kept == x ? x : y ^ 1;
 }
 
 /* Collapses half-edge h's edge to parameter t from the origin, after gproji_check_collapse. Returns the vertex. */
@@ -16028,14 +15982,10 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
-GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
-    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
-}
-
 /* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
 GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
     int32_t x, y;
-    if (!gproji_is_triangle(s, h)) return GPROJ_OK;
+    if (!gproji_edit_sees(s, h, 3)) return GPROJ_OK;
     x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
     if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
@@ -16070,8 +16020,8 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
         if (s->face[i] >= 0) s->face_mark[s->face[i]] = object->stamp;
         i = gproji_rotate(&object->view, i);
     } while (i != h);
-    left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
-    right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    left = gproji_edit_sees(s, h, 3) ? s->origin[s->prev[h]] : -1;
+    right = gproji_edit_sees(s, g, 3) ? s->origin[s->prev[g]] : -1;
     for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
         int32_t v = s->origin[i ^ 1], f = s->face[i];
         if (s->vertex_mark[v] == object->stamp && v != left && v != right)
@@ -16405,13 +16355,9 @@ typedef struct gproji_strip {
     int32_t *side; /* count: the rungs' origins */
 } gproji_strip;
 
-GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
-    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
-}
-
 /* The rung after h, across the quad at its left; -1 after the last. */
 GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
-    return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
+    return gproji_edit_sees(s, h, 4) ? s->next[s->next[h]] ^ 1 : -1;
 }
 
 /* Walks along half-edge h's strip. */
@@ -16419,7 +16365,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
                                              gproji_strip *strip, gproj_error *error) {
     int32_t first = h, g, i;
     memset(strip, 0, sizeof *strip);
-    while (gproji_is_quad(s, first ^ 1)) { /* back to the first rung: h itself if the strip is closed */
+    while (gproji_edit_sees(s, first ^ 1, 4)) { /* back to the first rung: h itself if the strip is closed */
         first = s->next[s->next[first ^ 1]];
         if (first == h) break;
     }
@@ -16442,26 +16388,6 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     return GPROJ_OK;
 }
 
-/* Cuts a quad from the origin x of half-edge `from` to vertex y on the opposite rung. If the strip has cut it already,
-   from side to side, that cut is split at t and met there. */
-GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
-    gproji_edit_store *s = &object->now;
-    int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
-    if (to < 0) {
-        cut = s->next[s->next[from]]; /* from x: to the rung's end, to the cut, along it */
-        gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
-        from = cut ^ 1;
-        to = gproji_edit_corner(s, s->face[from], y);
-    }
-    gproji_edit_cut(object, from, to);
-}
-
-/* Cuts the triangle at which a strip ends, with a new corner at half-edge h's origin: as a quad it would lead on. */
-GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
-    const gproji_edit_store *s = &object->now;
-    if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
-}
-
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
@@ -16479,19 +16405,29 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
                            "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
                            "would be two edges between the new vertices",
                            strip.rung[0] / 2, strip.rung[1] / 2);
-    /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
+    /* 1. Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
     for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
     if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, runs, error);
-    if (!code) {
-        for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
-        if (!strip.closed) {
-            gproji_strip_end(object, s->next[strip.rung[0] ^ 1]);
-            gproji_strip_end(object, strip.rung[last]);
-        }
-        for (i = 0; i < last; ++i) gproji_strip_cross(object, strip.rung[i], s->origin[strip.rung[i + 1]], t);
-        if (strip.closed) gproji_strip_cross(object, strip.rung[last], s->origin[strip.rung[0]], t);
-        h = strip.rung[strip.given];
+    for (i = 0; !code && i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
+    /* 2. A triangle at an end of the strip is cut from its new corner: as a quad it would lead on. */
+    for (i = 0; !code && !strip.closed && i < 2; ++i) {
+        int32_t end = i == 0 ? s->next[strip.rung[0] ^ 1] : strip.rung[last];
+        if (gproji_edit_sees(s, end, 4)) gproji_edit_cut(object, end, s->next[s->next[end]]);
     }
+    /* 3. Each quad is cut from rung to rung. If the strip has cut it already, from side to side, that cut is split at t
+       and met there. */
+    for (i = 0; !code && i < last + strip.closed; ++i) {
+        int32_t from = strip.rung[i], y = s->origin[strip.rung[i < last ? i + 1 : 0]];
+        int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
+        if (to < 0) {
+            cut = s->next[s->next[from]]; /* from the new vertex: to the rung's end, to the cut, along it */
+            gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
+            from = cut ^ 1;
+            to = gproji_edit_corner(s, s->face[from], y);
+        }
+        gproji_edit_cut(object, from, to);
+    }
+    if (!code) h = strip.rung[strip.given];
     gproji_pool_give_all(&pool);
     return code ? -1 : h / 2;
 }
@@ -16563,13 +16499,6 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* Numbers a vertex that is in the dual, too. */
-GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    int32_t number = dual->draft.soup.vertex_count++;
-    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->draft.position + 3 * (size_t)number);
-    dual->vertex[vertex] = number;
-}
-
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
@@ -16590,10 +16519,12 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
     for (e = 0; e < mesh->edge_count; ++e)
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
     gproji_fill(dual->vertex, mesh->vertex_count, -1);
-    for (v = 0; v < mesh->vertex_count; ++v)
-        if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
-    for (v = 0; v < mesh->vertex_count; ++v)
-        if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
+    for (k = 0; k < 2; ++k)
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            if (k == 0 ? !gproji_is_corner(mesh, mesh->position, v) : mesh->vertex_halfedge[v] >= 0) continue;
+            gproji_copy3(mesh->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count);
+            dual->vertex[v] = soup->vertex_count++;
+        }
     /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
        corner. */
     for (v = 0; v < mesh->vertex_count; ++v) {
