@@ -12125,28 +12125,6 @@ GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
     gproji_judge_nearest(loop);
 }
 
-/* Iteration n of a nearest solve that slides until `last`. False: nothing can be done. */
-GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_t guided, int32_t last) {
-    gproj_system *s = loop->system;
-    uint32_t state = 1;
-    int32_t i;
-    if (n > guided && n <= last && gproji_slide(loop)) return true;
-    if (n > guided && gproji_holds(loop)) return false;
-    gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].role == GPROJI_GUARD && n <= guided)
-            s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
-    gproji_linearise(loop);
-    if (!gproji_iterate(loop)) return false;
-    /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
-       symmetric step cannot leave it. */
-    for (i = 0; n == guided && i < s->variable_count; ++i) {
-        state = state * 1664525u + 1013904223u;
-        s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
-    }
-    return true;
-}
-
 /* Do the constraints hold at a minimum of the wishes? */
 GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
     double optimality = loop->iteration.optimality;
@@ -12159,7 +12137,9 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
-    int32_t last = iterations - gproji_min(restore, iterations / 3);
+    int32_t last = iterations - gproji_min(restore, iterations / 3), i;
+    uint32_t state = 1;
+    bool moved;
     for (n = loop->result.iterations + 1; n <= iterations; ++n) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
@@ -12168,7 +12148,23 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
-        if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
+        /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
+        moved = n > guided && n <= last && gproji_slide(loop);
+        if (!moved && (n <= guided || !gproji_holds(loop))) {
+            gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
+            for (i = 0; i < s->group_count; ++i)
+                if (s->group[i].role == GPROJI_GUARD && n <= guided)
+                    s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
+            gproji_linearise(loop);
+            moved = gproji_iterate(loop);
+        }
+        if (!moved) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
+        /* 2. To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
+           symmetric step cannot leave it. */
+        for (i = 0; n == guided && i < s->variable_count; ++i) {
+            state = state * 1664525u + 1013904223u;
+            s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
+        }
         gproji_see_nearest(loop);
         if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         if (s->changed) gproji_see_nearest(loop);
@@ -16355,11 +16351,6 @@ typedef struct gproji_strip {
     int32_t *side; /* count: the rungs' origins */
 } gproji_strip;
 
-/* The rung after h, across the quad at its left; -1 after the last. */
-GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
-    return gproji_edit_sees(s, h, 4) ? s->next[s->next[h]] ^ 1 : -1;
-}
-
 /* Walks along half-edge h's strip. */
 GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
                                              gproji_strip *strip, gproj_error *error) {
@@ -16372,7 +16363,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     g = first;
     do {
         ++strip->count;
-        g = gproji_strip_next(s, g);
+        g = gproji_edit_sees(s, g, 4) ? s->next[s->next[g]] ^ 1 : -1; /* across the quad at the left */
     } while (g >= 0 && g != first);
     strip->closed = g == first;
     if (strip->count == 1)
@@ -16381,7 +16372,7 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
-    for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
+    for (i = 0, g = first; i < strip->count; ++i, g = s->next[s->next[g]] ^ 1) {
         if (g == h) strip->given = i;
         strip->rung[i] = g, strip->side[i] = s->origin[g];
     }
@@ -16637,30 +16628,24 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* A factor for offsets from a face's mean, so that no square underflows: 1 unless the face is tiny. */
-GPROJI_INTERNAL double gproji_face_unit(const gproj_mesh *mesh, const double *position, int32_t face,
-                                        const double mean[3]) {
-    static const double tiny = 1e-100, most = 1e300;
-    double d[3], extent = 0;
-    int32_t h = mesh->face_halfedge[face], k, i;
-    for (k = 0; k < mesh->face_degree[face] && extent < tiny; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
-        for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
-    }
-    return extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
-}
-
 /* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
                                        double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    double unit, du, dv;
+    static const double tiny = 1e-100, most = 1e300;
+    double extent = 0, unit, du, dv;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
     gproji_set3(0, 0, 0, mean);
     for (k = 0; k < degree; ++k, h = mesh->next[h])
         gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
-    unit = gproji_face_unit(mesh, position, face, mean);
-    /* The longest direction first and then, from points without their part along it, the one across: so a narrow face
+    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless the face is tiny. */
+    for (k = 0; k < degree && extent < tiny; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+        for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
+    }
+    unit = extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
+    h = mesh->face_halfedge[face];
+    /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow face
        has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
@@ -16717,18 +16702,6 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
 
 GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
     *least = gproji_fmin(*least, value), *most = gproji_fmax(*most, value);
-}
-
-/* The largest difference between a face's vertices in distance from the circumcentre; infinite without one. */
-GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
-                                               const double normal[3]) {
-    double centre[3], least = HUGE_VAL, most = 0;
-    int32_t h = mesh->face_halfedge[face], k;
-    if (mesh->face_degree[face] == 3) return 0;
-    if (!gproji_circumcentre(mesh, mesh->position, face, mean, normal, centre)) return HUGE_VAL;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
-    return most - least;
 }
 
 /* -- normals and vertices -- */
@@ -16908,19 +16881,17 @@ GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], co
     return gproji_dot3(n, axis);
 }
 
-/* Have a and b different signs, both clear of rounding? */
-GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
-    return (a > rounding && b < -rounding) || (a < -rounding && b > rounding);
-}
-
-/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`? */
+/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`: has each its ends on both
+   sides of the other, clear of rounding? */
 GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *position, int32_t g, int32_t h,
                                         const double axis[3]) {
     const double *a = gproji_corner_at(mesh, position, g), *b = gproji_corner_at(mesh, position, mesh->next[g]);
     const double *c = gproji_corner_at(mesh, position, h), *d = gproji_corner_at(mesh, position, mesh->next[h]);
     double rounding = 1e-12 * gproji_distance3(a, b) * gproji_distance3(c, d);
-    return gproji_are_opposite(gproji_seen_area(a, b, c, axis), gproji_seen_area(a, b, d, axis), rounding) &&
-           gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
+    double first = gproji_seen_area(a, b, c, axis), second = gproji_seen_area(a, b, d, axis);
+    if (!(gproji_fmin(first, second) < -rounding && gproji_fmax(first, second) > rounding)) return false;
+    first = gproji_seen_area(c, d, a, axis), second = gproji_seen_area(c, d, b, axis);
+    return gproji_fmin(first, second) < -rounding && gproji_fmax(first, second) > rounding;
 }
 
 /* Consecutive sides, from a half-edge on. */
@@ -17068,13 +17039,20 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
         m->area += area, squares += area * area;
-        m->circularity_max = gproji_fmax(m->circularity_max, gproji_face_circularity(mesh, f, mean, normal) / unit);
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
         m->bow_tie_faces += gproji_is_bow_tie(mesh, mesh->position, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
         if (flatness > m->planarity_max) m->planarity_max = flatness, m->planarity_face = f;
+        if (mesh->face_degree[f] > 3) { /* vertices differ in distance from the circumcentre; infinitely without one */
+            double centre[3], least = HUGE_VAL, most = 0;
+            bool has_centre = gproji_circumcentre(mesh, mesh->position, f, mean, normal, centre);
+            int32_t h = mesh->face_halfedge[f], k;
+            for (k = 0; has_centre && k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+                gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
+            m->circularity_max = gproji_fmax(m->circularity_max, (has_centre ? most - least : HUGE_VAL) / unit);
+        }
         if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
             int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
             double first[3], second[3], joining[3], across[3], length;
@@ -17091,35 +17069,6 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
     mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
     if (mean_area > 0)
         m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
-}
-
-GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge = gproji_mean_edge(mesh, original);
-    double sum = 0, squares = 0, before[3], now[3];
-    int32_t v, f, k;
-    for (v = 0; v < mesh->vertex_count; ++v)
-        for (k = 0; k < 3; ++k) {
-            double x = original[3 * (size_t)v + (size_t)k];
-            if (v == 0 || x < low[k]) low[k] = x;
-            if (v == 0 || x > high[k]) high[k] = x;
-        }
-    diagonal = gproji_distance3(low, high);
-    if (!(diagonal > 0)) diagonal = 1;
-    if (!(edge > 0)) edge = 1;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
-        sum += d, squares += d * d;
-        m->deviation_max = gproji_fmax(m->deviation_max, d / diagonal);
-    }
-    if (mesh->vertex_count) {
-        m->deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
-        m->displacement_mean = sum / mesh->vertex_count / edge;
-    }
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproji_area_vector(mesh, original, f, before);
-        gproji_area_vector(mesh, mesh->position, f, now);
-        m->turned_faces += gproji_dot3(before, now) < 0;
-    }
 }
 
 GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean) {
@@ -17143,10 +17092,12 @@ GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planari
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
     gproji_normals normals;
     gproj_measures m;
-    int32_t v, e;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge, sum = 0, squares = 0, before[3], now[3];
+    int32_t v, e, f, k;
     memset(&m, 0, sizeof m);
     m.planarity_face = -1;
     if (!mesh) return m;
+    /* 1. Sizes and shape properties. */
     normals = gproji_normals_of(mesh, mesh->position);
     m.mean_edge = gproji_mean_edge(mesh, mesh->position);
     for (e = 0; e < mesh->edge_count; ++e) {
@@ -17162,7 +17113,31 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
         m.gauss_variation += gproji_gauss_area(&normals, v);
         m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(&normals, v));
     }
-    if (original) gproji_measure_change(mesh, original, &m);
+    if (!original) return m;
+    /* 2. Displacements from the original, relative to the diagonal of its box and to its mean edge. */
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (k = 0; k < 3; ++k) {
+            double x = original[3 * (size_t)v + (size_t)k];
+            if (v == 0 || x < low[k]) low[k] = x;
+            if (v == 0 || x > high[k]) high[k] = x;
+        }
+    diagonal = gproji_distance3(low, high), edge = gproji_mean_edge(mesh, original);
+    if (!(diagonal > 0)) diagonal = 1;
+    if (!(edge > 0)) edge = 1;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
+        sum += d, squares += d * d;
+        m.deviation_max = gproji_fmax(m.deviation_max, d / diagonal);
+    }
+    if (mesh->vertex_count) {
+        m.deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
+        m.displacement_mean = sum / mesh->vertex_count / edge;
+    }
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproji_area_vector(mesh, original, f, before);
+        gproji_area_vector(mesh, mesh->position, f, now);
+        m.turned_faces += gproji_dot3(before, now) < 0;
+    }
     return m;
 }
 
@@ -18972,24 +18947,6 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     return code;
 }
 
-GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
-    int32_t i, n = (int32_t)f->quad.count;
-    info->boundary_count = f->boundary, info->side_count = f->sides, info->patch_count = f->leaves;
-    for (i = f->boundary; i < f->vertices; ++i) {
-        int32_t valence = gproj_mesh_valence(mesh, i);
-        info->irregular_count += valence != 4;
-        info->min_valence = i == f->boundary ? valence : gproji_min(info->min_valence, valence);
-        info->max_valence = gproji_max(info->max_valence, valence);
-    }
-    for (i = 0; i < n; ++i) {
-        double angle = gproji_inner_angle(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
-                                          f->quad.data[gproji_quad_previous(i)]) *
-                       (180 / GPROJI_PI);
-        if (i == 0 || angle < info->min_angle) info->min_angle = angle;
-        if (i == 0 || angle > info->max_angle) info->max_angle = angle;
-    }
-}
-
 /* Fills the outline in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
 GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
     int32_t n = f->boundary, ring, start, i, most = 0, *count;
@@ -19058,6 +19015,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
+    int32_t i;
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
@@ -19074,7 +19032,20 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_divide_curve(&f);
     if (!code) code = gproji_fill_outline(&f);
     if (!code) code = gproji_build_filling(&f, object);
-    if (!code) gproji_describe_filling(&f, &object->mesh, &found);
+    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides, found.patch_count = f.leaves;
+    for (i = f.boundary; !code && i < f.vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(&object->mesh, i);
+        found.irregular_count += valence != 4;
+        found.min_valence = i == f.boundary ? valence : gproji_min(found.min_valence, valence);
+        found.max_valence = gproji_max(found.max_valence, valence);
+    }
+    for (i = 0; !code && i < (int32_t)f.quad.count; ++i) {
+        double angle = gproji_inner_angle(f.flat.xy, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
+                                          f.quad.data[gproji_quad_previous(i)]) *
+                       (180 / GPROJI_PI);
+        if (i == 0 || angle < found.min_angle) found.min_angle = angle;
+        if (i == 0 || angle > found.max_angle) found.max_angle = angle;
+    }
     gproji_pool_give_all(&f.pool);
     gproji_give(f.heap, f.flat.xy, f.flat.capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
