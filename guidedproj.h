@@ -10771,7 +10771,6 @@ typedef struct gproji_hooks {
     void *user;
 } gproji_hooks;
 
-/* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 /* Runs by the clock. */
 typedef struct gproji_times {
     double started, lap; /* clock readings */
@@ -10780,6 +10779,7 @@ typedef struct gproji_times {
     int32_t first;       /* iterations before this run */
 } gproji_times;
 
+/* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
@@ -10797,15 +10797,14 @@ typedef struct gproji_loop {
     int32_t earlier;      /* iterations of earlier attempts */
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
-    double
-        epsilon_least; /* lower end of the eps that follows the residual: gproji_epsilon_min, less if steps fall short */
-    bool stiff;        /* metric groups have a weight in this solve */
-    double agreement;  /* the merit's decrease by the full step, over the one predicted by the linearised rows */
-    bool factored;     /* the last attempt found a step, whether good or not */
-    bool failed;       /* an attempt of this iteration was not good */
-    int32_t wary;      /* iterations in which the stiffness does not fall fast */
-    double shift;      /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum;      /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    double epsilon_least; /* lower end of the eps that follows the residual; less if steps fall short */
+    bool stiff;           /* metric groups have a weight in this solve */
+    double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
+    bool factored;        /* the last attempt found a step, whether good or not */
+    bool failed;          /* an attempt of this iteration was not good */
+    int32_t wary;         /* iterations in which the stiffness does not fall fast */
+    double shift;         /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
@@ -11027,8 +11026,7 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
             if (!(row->weight > 0)) continue;
             if (named < 0) named = 0;
             if (row->terms == 1 && term->j < 0 && fabs(term->a) == 1) continue; /* x_i + c is exact, however large */
-            for (l = row->local; l < row[1].local; ++l)
-                named = gproji_fmax(named, fabs(s->x[g->local.variable[l]]));
+            for (l = row->local; l < row[1].local; ++l) named = gproji_fmax(named, fabs(s->x[g->local.variable[l]]));
         }
     }
     tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * (named < 0 ? extent : named));
@@ -11576,13 +11574,12 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
-/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether
-   there were any. */
-GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
-    if (!loop->system->changed) return false;
+/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. */
+GPROJI_INTERNAL void gproji_see_changes(gproji_loop *loop) {
+    if (!loop->system->changed) return;
     gproji_set_weights(loop, gproji_max(1, loop->result.iterations));
     gproji_linearise(loop);
-    return true;
+    loop->best.residual = loop->best.merit = HUGE_VAL;
 }
 
 /* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of constraints, in
@@ -11657,7 +11654,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         gproji_adapt_stiffness(loop);
         if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         /* 3. Progress, or the end of patience. */
-        if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+        gproji_see_changes(loop);
         better = loop->standing.residual < 0.9 * loop->best.residual || loop->standing.merit < 0.6 * loop->best.merit;
         if (better || gproji_wishes_are_on(s)) loop->waited = -1; /* progress, or none to be judged yet */
         if (++loop->waited == 0) loop->best = loop->standing;
@@ -11756,8 +11753,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
         if (r->outcome == GPROJ_CANCELLED) ending = ", cancelled by the caller";
         if (r->outcome == GPROJ_TIME_OUT) ending = ", but the time budget ran out before a minimum of the wishes";
         gproji_format(r->message, sizeof r->message, "%s%s: %d iteration%s, largest residual %g (%s), %s",
-                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name,
-                      figure);
+                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name, figure);
         return;
     }
     if (g) {
@@ -11824,8 +11820,8 @@ static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
-    GPROJI_NEAREST_GUIDED = 1,   /* iterations at the beginning */
-    GPROJI_NEAREST_RESTORE = 5,  /* iterations at the end, a tenth of many, up to */
+    GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
+    GPROJI_NEAREST_RESTORE = 5, /* iterations at the end, a tenth of many, up to */
     GPROJI_NEAREST_RESTORE_MOST = 8,
     GPROJI_NEAREST_ATTEMPTS = 6, /* factorisations with curvature, before those without */
     GPROJI_NEAREST_ROUNDS = 12,  /* multipliers with one factorisation */
@@ -12241,7 +12237,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     loop->restored = false;
     s->changed = changed;
     if (changed && nearest) gproji_see_nearest(loop);
-    if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+    gproji_see_changes(loop);
 }
 
 /* Analyses the matrix, and returns the bytes that a run will take besides those that the system holds then: asks for
@@ -14264,9 +14260,9 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
     object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
     if (!gproji_file_open(&file, path)) {
-        code = gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                           "'%s' cannot be opened; does it exist, and may you read it?",
-                           gproji_quote_path(path, quote));
+        code =
+            gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                        "'%s' cannot be opened; does it exist, and may you read it?", gproji_quote_path(path, quote));
         return gproji_mesh_done(object, code);
     }
     code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
@@ -15149,18 +15145,18 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
     return NULL;
 }
 
-/* Checks the points, and finds the tangents and the hierarchy. */
-GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, gproj_error *error) {
+/* Ends every function that makes a curve: checks the points, and finds the tangents and the hierarchy. Returns the
+   curve, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
     const double zero[3] = {0, 0, 0};
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    gproj_code code = gproji_check_positions(count + 1, x, "point", error);
-    if (code) return code;
+    bool valid = gproji_check_positions(count + 1, x, "point", error) == GPROJ_OK;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
-    for (s = 0; s <= count; ++s)
+    for (s = 0; valid && s <= count; ++s)
         for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
-    for (s = 0; s < count; ++s, t += 3, x += 3) {
+    for (s = 0; valid && s < count; ++s, t += 3, x += 3) {
         gproji_sub3(x + 3, x, t);
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
@@ -15169,22 +15165,17 @@ GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, g
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
-    if (from < 0)
-        return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                           "all %d points of the curve are the same; it needs two different ones",
-                           count + (closed ? 0 : 1));
-    /* 2. Zeros take over the direction before them. */
-    last = curve->tangent + 3 * (size_t)from;
-    for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
-        if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
-    return gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)
-               ? GPROJ_OK
-               : gproji_fail_memory(error);
-}
-
-/* Ends every function that makes a curve: returns it, or NULL and keeps nothing. */
-GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    if (!gproji_curve_build(curve, closed, error)) return curve;
+    if (from >= 0) {
+        /* 2. Zeros take over the direction before them. */
+        last = curve->tangent + 3 * (size_t)from;
+        for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
+            if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
+        if (gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)) return curve;
+        gproji_fail_memory(error);
+    } else if (valid) {
+        gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                    "all %d points of the curve are the same; it needs two different ones", count + (closed ? 0 : 1));
+    }
     gproj_curve_destroy(curve);
     return NULL;
 }
@@ -15759,17 +15750,6 @@ GPROJI_INLINE void gproji_edit_insert(gproji_edit_store *s, int32_t before, int3
     s->next[h] = after, s->prev[after] = h;
 }
 
-/* Chooses vertex_halfedge, given an outgoing half-edge: at the boundary the one without a face. */
-GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
-    gproji_edit_store *s = &object->now;
-    int32_t h = outgoing;
-    while (s->face[h] >= 0) {
-        h = gproji_rotate(&object->view, h);
-        if (h == outgoing) break;
-    }
-    s->vertex_halfedge[s->origin[h]] = h;
-}
-
 /* Does half-edge h have a face with so many corners? */
 GPROJI_INLINE bool gproji_edit_sees(const gproji_edit_store *s, int32_t h, int32_t degree) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == degree;
@@ -15958,19 +15938,26 @@ GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int3
 GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
-    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing, apex[2];
+    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing[3];
     gproji_edit_between(s, a, b, t, kept);
     do {
         s->origin[i] = kept;
         i = gproji_rotate(&object->view, i);
     } while (i != start);
-    gproji_edit_unlink(s, h, &apex[0]);
-    outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
+    gproji_edit_unlink(s, h, &outgoing[1]);
+    outgoing[0] = gproji_edit_unlink(s, h ^ 1, &outgoing[2]);
     s->origin[h] = s->origin[h ^ 1] = -1, s->edge_into[h / 2] = -1;
     s->vertex_into[gone] = kept, s->vertex_halfedge[gone] = -1;
-    gproji_edit_anchor(object, outgoing);
-    for (i = 0; i < 2; ++i)
-        if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
+    /* vertex_halfedge: at the boundary the one without a face. */
+    for (i = 0; i < 3; ++i) {
+        int32_t g = outgoing[i];
+        if (g < 0) continue;
+        while (s->face[g] >= 0) {
+            g = gproji_rotate(&object->view, g);
+            if (g == outgoing[i]) break;
+        }
+        s->vertex_halfedge[s->origin[g]] = g;
+    }
     if (!s->on_polyline[gone]) return kept;
     s->on_polyline[kept] = 1;
     for (i = 0; i < s->count[GPROJI_EDIT_POLYLINE_VERTEX]; ++i)
@@ -16423,48 +16410,43 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
     return code ? -1 : h / 2;
 }
 
-/* Collapses a strip's rungs one by one; those that are refused again, after the others, as long as that helps. */
-GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
-                                                 gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int32_t left = strip->count, tried, i;
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_edit_store *s = object ? &object->now : NULL, copy;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error), left, tried, i;
+    char message[GPROJ_MESSAGE_SIZE];
+    gproji_strip strip;
+    gproji_pool pool;
     gproj_code code, refusal;
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(s, &pool, h, &strip, error);
+    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
+    if (code) {
+        gproji_pool_give_all(&pool);
+        return -1;
+    }
+    /* Collapses rungs one by one; those that are refused again, after the others, as long as that helps. */
+    left = strip.count;
     do {
         tried = left, left = 0, refusal = GPROJ_OK;
         gproji_error_clear(error);
         for (i = 0; i < tried; ++i) {
-            int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+            int32_t e = gproji_edit_root(s->edge_into, strip.rung[i] / 2);
             if (e < 0) continue; /* merged into another rung, if the strip crosses itself, and gone with that */
-            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip.side[i]) ? 2 * e : 2 * e + 1;
             code = gproji_check_collapse(object, h, error);
             if (!code) gproji_edit_collapse(object, h, t);
             if (!code) continue;
             refusal = code;
-            strip->rung[left] = strip->rung[i];
-            strip->side[left++] = strip->side[i];
+            strip.rung[left] = strip.rung[i];
+            strip.side[left++] = strip.side[i];
         }
     } while (left && left < tried);
-    return refusal;
-}
-
-GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
-    gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = gproji_edit_given_edge(object, edge, t, error);
-    char message[GPROJ_MESSAGE_SIZE];
-    gproji_edit_store copy;
-    gproji_strip strip;
-    gproji_pool pool;
-    gproj_code code;
-    if (h < 0) return -1;
-    gproji_pool_start(&pool, &object->heap);
-    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
-    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
-    if (!code) {
-        code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
-        if (code && error) { /* the rung's reason, in a sentence about the strip */
-            gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
-            memcpy(error->message, message, sizeof message);
-        }
+    code = gproji_edit_settle(object, &copy, refusal);
+    if (code && error) { /* the rung's reason, in a sentence about the strip */
+        gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+        memcpy(error->message, message, sizeof message);
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : strip.count;
@@ -17258,8 +17240,8 @@ GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const doub
 }
 
 /* ============================================================================================================
-   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector, mesh,
-   measure.
+   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector,
+   mesh, measure.
 
    Based on Pottmann, Liu, Wallner, Bobenko, Wang: Geometry of multi-layer freeform structures for architecture (2007),
    and Liu, Pottmann, Wallner, Yang, Wang: Geometric modeling with conical meshes and developable surfaces (2006).
@@ -17704,11 +17686,6 @@ typedef struct gproji_patch {
     int32_t vertices;
 } gproji_patch;
 
-typedef struct gproji_flat {
-    double *xy; /* 2 * vertices, in the plane */
-    size_t capacity;
-} gproji_flat;
-
 typedef struct gproji_filling {
     gproji_heap *heap;
     gproji_pool pool; /* holds `seen` and `border` */
@@ -17728,7 +17705,8 @@ typedef struct gproji_filling {
     gproji_ints polygon; /* patch outlines, one after the other: 2 * vertex + (is it a patch corner) */
     gproji_ints patch;   /* outline ends in `polygon`; negative: the patch has been cut */
     gproji_ints quad;    /* 4 vertices each */
-    gproji_flat flat;
+    double *flat;        /* 2 * vertices: in the plane */
+    size_t flat_capacity;
     int32_t vertices;
     int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
     int32_t cut_vertices;   /* then those on cuts */
@@ -18320,10 +18298,10 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    void *block = f->flat.xy;
-    if (!gproji_reserve(f->heap, &block, &f->flat.capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
-    f->flat.xy = (double *)block;
-    f->flat.xy[2 * (size_t)f->vertices] = x, f->flat.xy[2 * (size_t)f->vertices + 1] = y;
+    void *block = f->flat;
+    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
+    f->flat = (double *)block;
+    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
 }
@@ -18366,7 +18344,7 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
     /* A simple curve may have chords that cross. */
-    if (!gproji_find_crossing(f->heap, f->flat.xy, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     for (from = 0; f->start.data[from + 1] <= i;) ++from;
     for (to = 0; f->start.data[to + 1] <= j;) ++to;
@@ -18401,7 +18379,7 @@ GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
 
 GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) {
-    return gproji_inner_angle(o->f->flat.xy, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
+    return gproji_inner_angle(o->f->flat, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
                               gproji_outline_vertex(o, i + o->count - 1));
 }
 
@@ -18443,7 +18421,7 @@ GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int3
 
 /* Tries cuts from place i to place j, over edge numbers with the right parity; a cheaper one replaces `best`. */
 GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
-    const double *xy = o->f->flat.xy;
+    const double *xy = o->f->flat;
     int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end, k;
     double at[2][2], length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge, cost = 0;
     bool corner[2][2];
@@ -18534,14 +18512,14 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
         int32_t a, b, first = f->vertices;
         for (k = 0; k < o.count; ++k)
             o.edge +=
-                gproji_distance2(f->flat.xy, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
         cut = gproji_find_cut(&o);
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
             double t = (double)k / cut.edges;
-            if (!gproji_add_flat(f, (1 - t) * f->flat.xy[2 * b] + t * f->flat.xy[2 * a],
-                                 (1 - t) * f->flat.xy[2 * b + 1] + t * f->flat.xy[2 * a + 1]))
+            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
                 return false;
         }
         if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
@@ -18635,7 +18613,7 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; done && i < n; ++i) {
         int32_t v = gproji_outline_vertex(o, place[p.first] + i);
         number[patch.loop.data[i]] = v;
-        x += f->flat.xy[2 * v] / n, y += f->flat.xy[2 * v + 1] / n;
+        x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
     }
     for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
@@ -18782,9 +18760,9 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
 
 GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
     const int32_t *quad = u->f->quad.data;
-    const double *p = u->f->flat.xy + 2 * (size_t)quad[corner],
-                 *q = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_next(corner)],
-                 *r = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_previous(corner)];
+    const double *p = u->f->flat + 2 * (size_t)quad[corner],
+                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
+                 *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
     double s = u->edge[corner / 4];
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
 }
@@ -18837,7 +18815,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
-    double *moving = f->flat.xy + 2 * (size_t)f->boundary, before, slope, length = 1;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
@@ -18861,7 +18839,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
 /* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
 GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     int32_t unknowns = 2 * (f->vertices - f->boundary), quads = (int32_t)f->quad.count / 4, q, i, j, n;
-    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat.xy);
+    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
     gproji_untangling u;
     double *size;
     if (code || unknowns == 0) return code;
@@ -18877,8 +18855,8 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     /* 1. Wanted edges: the boundary's own, harmonic inside. */
     size = u.start; /* still free, and large enough */
     for (i = 0; !code && i < f->boundary; ++i)
-        size[i] = 0.5 * (gproji_distance2(f->flat.xy, i, (i + 1) % f->boundary) +
-                         gproji_distance2(f->flat.xy, i, (i + f->boundary - 1) % f->boundary));
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
     if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, size);
     for (q = 0; !code && q < quads; ++q) {
         const int32_t *v = f->quad.data + 4 * (size_t)q;
@@ -18933,8 +18911,8 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     for (v = f->boundary; !code && v < f->vertices; ++v) {
         double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
-        gproji_add_scaled3(f->flat.xy[2 * (size_t)v], f->across, out);
-        gproji_add_scaled3(f->flat.xy[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
     if (!code) {
@@ -18959,11 +18937,10 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
             int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
-            double x = f->flat.xy[2 * next] - f->flat.xy[2 * before],
-                   y = f->flat.xy[2 * next + 1] - f->flat.xy[2 * before + 1];
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
-            depth *= gproji_fmin(gproji_distance2(f->flat.xy, i, next), gproji_distance2(f->flat.xy, i, before));
-            if (!gproji_add_flat(f, f->flat.xy[2 * i] - depth * y, f->flat.xy[2 * i + 1] + depth * x) ||
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
                 !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
                 return gproji_fail_memory(f->error);
         }
@@ -18986,7 +18963,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     code = gproji_place_vertices(f);
     n = (int32_t)f->quad.count;
     for (i = 0; i < n; ++i)
-        if (!(gproji_turn2(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
                            f->quad.data[gproji_quad_previous(i)]) > 0))
             break;
     *good = i == n;
@@ -19040,14 +19017,14 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
         found.max_valence = gproji_max(found.max_valence, valence);
     }
     for (i = 0; !code && i < (int32_t)f.quad.count; ++i) {
-        double angle = gproji_inner_angle(f.flat.xy, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
+        double angle = gproji_inner_angle(f.flat, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
                                           f.quad.data[gproji_quad_previous(i)]) *
                        (180 / GPROJI_PI);
         if (i == 0 || angle < found.min_angle) found.min_angle = angle;
         if (i == 0 || angle > found.max_angle) found.max_angle = angle;
     }
     gproji_pool_give_all(&f.pool);
-    gproji_give(f.heap, f.flat.xy, f.flat.capacity, 2 * sizeof(double));
+    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
     gproji_ints_give(f.heap, &f.start);
     gproji_ints_give(f.heap, &f.polygon);
