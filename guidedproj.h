@@ -16627,8 +16627,8 @@ GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *pos
     }
     unit = extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
     h = mesh->face_halfedge[face];
-    /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow face
-       has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
+    /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow
+       face has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         for (i = 0; i < 3; ++i) d[i] *= unit;
