@@ -10776,7 +10776,6 @@ typedef struct gproji_hooks {
     void *user;
 } gproji_hooks;
 
-/* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 /* Runs by the clock. */
 typedef struct gproji_times {
     double started, lap; /* clock readings */
@@ -10785,6 +10784,7 @@ typedef struct gproji_times {
     int32_t first;       /* iterations before this run */
 } gproji_times;
 
+/* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
@@ -10802,17 +10802,14 @@ typedef struct gproji_loop {
     int32_t earlier;      /* iterations of earlier attempts */
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
-    double
-        epsilon_least; /* lower end of the eps that follows the residual: gproji_epsilon_min, less if steps fall short */
-    double fallen;     /* the residual when its fall was looked at last, */
-    int32_t fall_seen; /* and the iterations then */
-    bool stiff;        /* metric groups have a weight in this solve */
-    double agreement;  /* the merit's decrease by the full step, over the one predicted by the linearised rows */
-    bool factored;     /* the last attempt found a step, whether good or not */
-    bool failed;       /* an attempt of this iteration was not good */
-    int32_t wary;      /* iterations in which the stiffness does not fall fast */
-    double shift;      /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum;      /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    double epsilon_least; /* lower end of the eps that follows the residual; less if steps fall short */
+    bool stiff;           /* metric groups have a weight in this solve */
+    double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
+    bool factored;        /* the last attempt found a step, whether good or not */
+    bool failed;          /* an attempt of this iteration was not good */
+    int32_t wary;         /* iterations in which the stiffness does not fall fast */
+    double shift;         /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
@@ -11015,37 +11012,29 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     pass->largest[task] = gproji_maximum_value(&m);
 }
 
-/* max |x| over the variables in rows of constraints and bounds; `all` if there are none. */
-GPROJI_INTERNAL double gproji_extent_of_rows(const gproj_system *s, double all) {
-    double largest = 0;
+/* The caller's tolerance, or the residual that rounding allows at this x. */
+GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double tolerance, extent, named = -1;
+    bool large;
     int64_t l;
     int32_t i, r;
-    bool none = true;
-    for (i = 0; i < s->group_count; ++i) {
+    if (loop->options.tolerance > 0) return loop->options.tolerance;
+    /* 1. Rounding of single variables. A stray one that no constraint or bound names must not raise it. */
+    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    large = 8 * DBL_EPSILON * extent > 1e-11;
+    for (i = 0; large && i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const gproj_term *term = g->term + row->term;
             if (!(row->weight > 0)) continue;
-            none = false;
+            if (named < 0) named = 0;
             if (row->terms == 1 && term->j < 0 && fabs(term->a) == 1) continue; /* x_i + c is exact, however large */
-            for (l = row->local; l < row[1].local; ++l)
-                largest = gproji_fmax(largest, fabs(s->x[g->local.variable[l]]));
+            for (l = row->local; l < row[1].local; ++l) named = gproji_fmax(named, fabs(s->x[g->local.variable[l]]));
         }
     }
-    return none ? all : largest;
-}
-
-/* The caller's tolerance, or the residual that rounding allows at this x. */
-GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    double tolerance, extent;
-    int32_t i, r;
-    if (loop->options.tolerance > 0) return loop->options.tolerance;
-    /* 1. Rounding of single variables. A stray one that no row names must not raise it. */
-    extent = gproji_pass_over(s, 0, gproji_extent_task);
-    if (8 * DBL_EPSILON * extent > 1e-11) extent = gproji_extent_of_rows(s, extent);
-    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * extent);
+    tolerance = gproji_fmax(1e-13, 8 * DBL_EPSILON * (named < 0 ? extent : named));
     /* 2. Rounding of long sums: the linear terms of global rows. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -11322,44 +11311,41 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
     return gproji_go(loop, 1, course);
 }
 
-/* The largest of 1, 1/2, 1/4 .. of the step that lowers the true merit and is not refused; the shortest may be refused,
-   but must lower it. 0: none. x is at the end of the full step, `none` the merit before. `bent`: a bend was tried. */
-GPROJI_INTERNAL double gproji_backtrack(gproji_loop *loop, double none, const gproji_course *course, bool *bent) {
-    gproj_system *s = loop->system;
-    double merit = gproji_arrive(loop, 1, course), promised = none - course->model, t = 1;
-    *bent = !s->schur.on && none - merit < gproji_bend_below * promised;
-    if (*bent) merit = gproji_bend_step(loop, course, merit);
-    loop->agreement = promised > 0 ? (none - merit) / promised : 1;
-    while (t > gproji_shortest &&
-           (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x))))
-        merit = gproji_go(loop, t /= 2, course);
-    return merit <= none ? t : 0;
-}
-
 /* The part of the step to take, from the merit along it; 0: none, the step is no good. */
 GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    gproji_course merit;
-    double none, full, t;
-    bool bent = false;
+    gproji_course course;
+    double none, merit, promised, t;
     loop->agreement = 1;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
-    gproji_merit_along(s, &merit);
-    none = gproji_merit_at(&merit, 0);
+    gproji_merit_along(s, &course);
+    none = gproji_merit_at(&course, 0);
+    promised = none - course.model;
     if (loop->hooks.settle) {
-        t = gproji_backtrack(loop, none, &merit, &bent);
+        /* x is at the end of the full step. Bends it if the linearised rows promised more; then halves it while it
+           raises the true merit or is refused. The shortest part may be refused, but must lower the merit. */
+        bool bent;
+        merit = gproji_arrive(loop, 1, &course);
+        bent = !s->schur.on && none - merit < gproji_bend_below * promised;
+        if (bent) merit = gproji_bend_step(loop, &course, merit);
+        loop->agreement = promised > 0 ? (none - merit) / promised : 1;
+        for (t = 1;
+             t > gproji_shortest &&
+             (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)));)
+            merit = gproji_go(loop, t /= 2, &course);
+        if (!(merit <= none)) return 0;
         if (t < 1 || bent) return t; /* the merit along the straight step says nothing of a bent one */
     } else {
-        full = gproji_merit_at(&merit, 1);
-        if (!(full <= DBL_MAX)) return 0;
-        loop->agreement = none > merit.model ? (none - full) / (none - merit.model) : 1;
-        if (full > none) {
-            t = gproji_minimise_merit(&merit, 0.05, 1);
-            return gproji_merit_at(&merit, t) < none ? t : 0;
+        merit = gproji_merit_at(&course, 1);
+        if (!(merit <= DBL_MAX)) return 0;
+        loop->agreement = none > course.model ? (none - merit) / promised : 1;
+        if (merit > none) {
+            t = gproji_minimise_merit(&course, 0.05, 1);
+            return gproji_merit_at(&course, t) < none ? t : 0;
         }
     }
     if (gproji_wishes_are_on(s) || loop->standing.residual > 1e-2) return 1;
-    t = gproji_minimise_merit(&merit, 0.1, 2);
+    t = gproji_minimise_merit(&course, 0.1, 2);
     return t >= 1.3 ? t : 1;
 }
 
@@ -11466,25 +11452,6 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
     return false;
 }
 
-/* Finds a step with this eps and takes it if it is good; x is then the new one, else the old. */
-GPROJI_INTERNAL bool gproji_try_step(gproji_loop *loop, double epsilon) {
-    gproj_system *s = loop->system;
-    bool good;
-    loop->iteration.epsilon = epsilon;
-    loop->factored = gproji_find_bounded_step(loop, epsilon);
-    loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
-    good = loop->iteration.length > 0;
-    if (!good)
-        gproji_step_back(s);
-    else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) { /* else x is there */
-        loop->iteration.step = gproji_take_step(s, loop->iteration.length);
-        gproji_settle(loop);
-    }
-    if (!good && loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
-    gproji_lap(loop, GPROJ_PHASE_REFRESH);
-    return good;
-}
-
 /* Sets the stiffness of steps, x being the beginning of the next one. Metric groups that come back by that are
    compiled, if they are not, and linearised. */
 GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
@@ -11542,7 +11509,20 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     loop->iteration.factorisations = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
         double before = loop->standing.residual;
-        bool stepped = gproji_try_step(loop, epsilon);
+        bool stepped;
+        /* 1. The full step, and the good part of it: x is the new one, or the old one if there is none. */
+        loop->iteration.epsilon = epsilon;
+        loop->factored = gproji_find_bounded_step(loop, epsilon);
+        loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
+        stepped = loop->iteration.length > 0;
+        if (!stepped) {
+            gproji_step_back(s);
+            if (loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
+        } else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) {
+            loop->iteration.step = gproji_take_step(s, loop->iteration.length);
+            gproji_settle(loop);
+        } /* else x is there */
+        gproji_lap(loop, GPROJ_PHASE_REFRESH);
         if (stepped) gproji_linearise(loop);
         if (stepped && loop->standing.merit <= DBL_MAX) {
             if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
@@ -11554,7 +11534,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_linearise(loop);
         }
         gproji_start_bounds(s);
-        /* Stiffer steps, or a larger eps if stiffness is no help. */
+        /* 2. Stiffer steps, or a larger eps if stiffness is no help. */
         if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
             loop->failed = true;
             gproji_stiffen(loop, gproji_fmax(3 * s->stiffness, gproji_stiffness_least));
@@ -11565,14 +11545,20 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     return false;
 }
 
-GPROJI_INTERNAL void gproji_report_iteration(gproji_loop *loop, int32_t number) {
-    loop->iteration.number = loop->earlier + number;
+/* Books iteration n and calls the caller's function, for which no phase is charged. False: stop. */
+GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
+    bool go_on = true;
+    loop->iteration.number = loop->earlier + n;
     loop->iteration.residual = loop->standing.residual;
     loop->iteration.merit = loop->standing.merit;
     loop->iteration.energy = loop->standing.energy;
-    loop->result.iterations = number;
+    loop->result.iterations = n;
     loop->result.damped += loop->iteration.factorisations > 1 || loop->iteration.length < 1;
     loop->result.step = loop->iteration.step;
+    if (loop->options.on_iteration)
+        go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
+    loop->time.lap = gproji_now(loop->system);
+    return go_on;
 }
 
 /* Do the constraints hold? */
@@ -11593,52 +11579,12 @@ GPROJI_INTERNAL bool gproji_should_pause(gproji_loop *loop) {
     return loop->paused;
 }
 
-/* Has this solve come near to its end, and then only crept nearer? Safeguards may ask for less then. */
-GPROJI_INTERNAL bool gproji_creeps(const gproj_system *s) { return s->creeping; }
-
-/* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
-   are patient: they are made where this one has ended badly. */
-GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
-    double residual = loop->standing.residual;
-    if (loop->result.iterations < loop->fall_seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
-    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->fallen)
-        loop->system->creeping = true;
-    loop->fallen = residual;
-    loop->fall_seen = loop->result.iterations;
-}
-
-/* Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back, counts the
-   iterations since the wishes have faded. half: the last one of the first half. Errors stay in s->error. */
-GPROJI_INTERNAL void gproji_begin_iteration(gproji_loop *loop, int32_t n, int32_t half) {
-    gproj_system *s = loop->system;
-    memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
-    s->progress.iteration = n, s->progress.iterations = loop->iterations;
-    gproji_place_woken(loop, gproji_wake_guard(s));
-    if (s->error.code != GPROJ_OK) return;
-    if (gproji_set_weights(loop, n)) gproji_linearise(loop);
-    s->progress.settling =
-        n <= half && (gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled))
-            ? 0
-            : s->progress.settling + 1;
-    loop->standing = gproji_take_standing(s);
-}
-
-/* Calls the caller's function; no phase is charged for it. False: stop. */
-GPROJI_INTERNAL bool gproji_call_back(gproji_loop *loop) {
-    bool go_on = true;
-    if (loop->options.on_iteration)
-        go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
-    loop->time.lap = gproji_now(loop->system);
-    return go_on;
-}
-
-/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. Returns whether
-   there were any. */
-GPROJI_INTERNAL bool gproji_see_changes(gproji_loop *loop) {
-    if (!loop->system->changed) return false;
+/* Lets changes by the callback, or by the caller between two runs, count before anything is judged. */
+GPROJI_INTERNAL void gproji_see_changes(gproji_loop *loop) {
+    if (!loop->system->changed) return;
     gproji_set_weights(loop, gproji_max(1, loop->result.iterations));
     gproji_linearise(loop);
-    return true;
+    loop->best.residual = loop->best.merit = HUGE_VAL;
 }
 
 /* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of constraints, in
@@ -11682,14 +11628,24 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST);
-    bool better;
+    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST), n;
+    bool guided, better;
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
-        gproji_watch_fall(loop);
-        gproji_begin_iteration(loop, loop->result.iterations + 1, half);
+        /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
+           counts the iterations since the wishes have faded. */
+        n = loop->result.iterations + 1;
+        memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
+        s->progress.iteration = n, s->progress.iterations = loop->iterations;
+        gproji_place_woken(loop, gproji_wake_guard(s));
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+        if (gproji_set_weights(loop, n)) gproji_linearise(loop);
+        guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled);
+        s->progress.settling = n <= half && guided ? 0 : s->progress.settling + 1;
+        loop->standing = gproji_take_standing(s);
+        if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+        /* 2. The step, unless all is done. */
         if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
                                    (loop->result.iterations > 0 && loop->result.step <= loop->tolerance)))
             return GPROJ_CONVERGED;
@@ -11697,14 +11653,13 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (!gproji_iterate(loop)) {
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             if (gproji_holds(loop)) return GPROJ_CONVERGED;
-            if (!gproji_leave_out(loop, loop->result.iterations + 1) && !gproji_release_safeguards(loop))
-                return GPROJ_STALLED;
+            if (!gproji_leave_out(loop, n) && !gproji_release_safeguards(loop)) return GPROJ_STALLED;
             continue;
         }
         gproji_adapt_stiffness(loop);
-        gproji_report_iteration(loop, loop->result.iterations + 1);
-        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
-        if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+        if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
+        /* 3. Progress, or the end of patience. */
+        gproji_see_changes(loop);
         better = loop->standing.residual < 0.9 * loop->best.residual || loop->standing.merit < 0.6 * loop->best.merit;
         if (better || gproji_wishes_are_on(s)) loop->waited = -1; /* progress, or none to be judged yet */
         if (++loop->waited == 0) loop->best = loop->standing;
@@ -11713,23 +11668,6 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
             return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
-}
-
-/* The wish with the most energy that acts to the end; -1: none, or it fades by itself. */
-GPROJI_INTERNAL int32_t gproji_lasting_wish(const gproj_system *s) {
-    double most = 0;
-    int32_t wish = -1, g, k;
-    for (g = 0; g < s->group_count; ++g) {
-        const gproji_group *group = &s->group[g];
-        bool decays = group->schedule.decay > 0 && group->schedule.decay < 1;
-        double energy = 0;
-        if (group->kind != GPROJ_WISH || !gproji_group_counts(group) || decays) continue;
-        for (k = 0; k < gproji_group_tasks(group); ++k) energy += group->tally.part[k].sum;
-        if (!(energy > most)) continue;
-        most = energy;
-        wish = g;
-    }
-    return wish;
 }
 
 /* Are the constraints at a minimum of their own, so that no wish is to blame? The gradients of their rows, w^2 phi grad
@@ -11760,18 +11698,24 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
-    double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance;
-    int32_t second = -1, wish = gproji_lasting_wish(s), k;
-    bool guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0, balanced;
+    double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
+    int32_t second = -1, wish = -1, i, k;
+    bool guided, balanced;
     more[0] = 0;
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
-    balanced = guided && gproji_constraints_balance(s);
-    for (k = 0; k < s->group_count; ++k) { /* the other group that must hold with the largest residual */
-        double max = gproj_system_group_info(s, k).max;
-        if (k == loop->standing.group || !gproji_must_hold(&s->group[k]) || max <= largest) continue;
-        largest = max;
-        second = k;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *other = &s->group[i];
+        bool decays = other->schedule.decay > 0 && other->schedule.decay < 1;
+        bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !decays;
+        double max = gproj_system_group_info(s, i).max, energy = 0;
+        /* 1. The wish with the most energy among those that act to the end and do not fade by themselves. */
+        for (k = 0; lasts && k < gproji_group_tasks(other); ++k) energy += other->tally.part[k].sum;
+        if (energy > most) most = energy, wish = i;
+        /* 2. The other group that must hold with the largest residual. */
+        if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
+    guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
+    balanced = guided && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
         gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
@@ -11794,30 +11738,43 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       g->name);
 }
 
-/* Writes the verdict in a sentence: outcome, worst row, obstacle, advice. */
+/* Writes the verdict in a sentence: outcome, worst row, obstacle, advice; or how near the nearest is. */
 GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
-    const gproj_system *s = loop->system;
     const gproji_standing *standing = &loop->standing;
-    const gproji_group *g = standing->group >= 0 ? &s->group[standing->group] : NULL;
+    const gproji_group *g = standing->group >= 0 ? &loop->system->group[standing->group] : NULL;
     int32_t iterations = loop->earlier + r->iterations;
-    const char *plural = iterations == 1 ? "" : "s";
-    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE];
+    const char *plural = iterations == 1 ? "" : "s", *ending = "";
+    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE], figure[64];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
     r->worst_element = g ? g->row[standing->row].element : -1;
-    if (!g) {
-        gproji_format(r->message, sizeof r->message,
-                      "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
+    gproji_format(figure, sizeof figure, "projected gradient of the wishes %g", r->optimality);
+    if (g && loop->options.nearest && gproji_holds(loop)) {
+        if (r->outcome == GPROJ_CONVERGED) ending = ", at a minimum of the wishes";
+        if (r->outcome == GPROJ_ITERATION_LIMIT) ending = ", but more iterations would serve the wishes better";
+        if (r->outcome == GPROJ_STALLED) ending = ", and no step serves the wishes better";
+        if (r->outcome == GPROJ_CANCELLED) ending = ", cancelled by the caller";
+        if (r->outcome == GPROJ_TIME_OUT) ending = ", but the time budget ran out before a minimum of the wishes";
+        gproji_format(r->message, sizeof r->message, "%s%s: %d iteration%s, largest residual %g (%s), %s",
+                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name, figure);
         return;
     }
-    gproji_advise(loop, g, more, sizeof more);
-    element[0] = 0;
-    if (g->place != GPROJ_PLACE_NONE)
-        gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
-    gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
-                  gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+    if (g) {
+        gproji_advise(loop, g, more, sizeof more);
+        element[0] = 0;
+        if (g->place != GPROJ_PLACE_NONE)
+            gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
+        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
+                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+    } else {
+        gproji_format(r->message, sizeof r->message,
+                      "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
+    }
+    if (!loop->options.nearest) return;
+    gproji_append(r->message, sizeof r->message, strlen(r->message), "; ", 2);
+    gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
 }
 
 /* A result that carries an error's sentence. */
@@ -11868,8 +11825,8 @@ static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
-    GPROJI_NEAREST_GUIDED = 1,   /* iterations at the beginning */
-    GPROJI_NEAREST_RESTORE = 5,  /* iterations at the end, a tenth of many, up to */
+    GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
+    GPROJI_NEAREST_RESTORE = 5, /* iterations at the end, a tenth of many, up to */
     GPROJI_NEAREST_RESTORE_MOST = 8,
     GPROJI_NEAREST_ATTEMPTS = 6, /* factorisations with curvature, before those without */
     GPROJI_NEAREST_ROUNDS = 12,  /* multipliers with one factorisation */
@@ -12129,18 +12086,21 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     return false;
 }
 
-/* The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by row. The
-   least over all y would be the norm of the gradient projected to the tangent space of the constraints. */
-GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
-    double wishes = 0, left = 0;
+/* For rows seen with the weights of slides: optimality, and energies as the schedules weigh them. */
+GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
+    gproj_system *s = loop->system;
+    double wishes = 0, left = 0, factor = 1, scale = gproji_nearest_scale, optimality;
     int64_t l;
     int32_t i, r, rows = 0;
+    /* 1. The violation of (1) at x, for y as it is: the norm of the left side over that of the wishes' part, row by
+       row. The least over all y would be the norm of the gradient projected to the constraints' tangent space. */
     memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
+        bool wish = g->kind == GPROJ_WISH;
+        if (wish && g->weight > 0) factor = g->schedule.weight / g->weight;
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            bool wish = g->kind == GPROJ_WISH;
             double pull = gproji_weight2(g, row) * (wish ? row->phi : g->multiplier[r].y);
             gproji_row_add(g, row, pull, s->vector.gradient);
             rows += wish;
@@ -12149,21 +12109,12 @@ GPROJI_INTERNAL double gproji_optimality(gproj_system *s) {
         }
     }
     for (i = 0; i < s->variable_count; ++i) left += s->vector.gradient[i] * s->vector.gradient[i];
-    if (rows == 0) return 0;
-    if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX)) return HUGE_VAL;
-    return sqrt(left / gproji_fmax(wishes, 1e-12 * gproji_nearest_scale * gproji_nearest_scale * gproji_nearest_scale *
-                                               gproji_nearest_scale * (1 + (double)rows)));
-}
-
-/* Optimality, and energies as the schedules weigh them, for rows seen with the weights of slides. */
-GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    double factor = 1;
-    int32_t i;
-    loop->iteration.optimality = loop->result.optimality = gproji_optimality(s);
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_WISH && s->group[i].weight > 0)
-            factor = s->group[i].schedule.weight / s->group[i].weight;
+    if (!(left <= DBL_MAX) || !(wishes <= DBL_MAX))
+        optimality = HUGE_VAL;
+    else
+        optimality = sqrt(left / gproji_fmax(wishes, 1e-12 * scale * scale * scale * scale * (1 + (double)rows)));
+    loop->iteration.optimality = loop->result.optimality = rows == 0 ? 0 : optimality;
+    /* 2. Wishes are scaled, all by the same factor. */
     loop->standing.merit += loop->standing.energy * (factor * factor - 1);
     loop->standing.energy *= factor * factor;
 }
@@ -12173,28 +12124,6 @@ GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
     gproji_set_nearest_weights(loop->system, gproji_nearest_scale);
     gproji_linearise(loop);
     gproji_judge_nearest(loop);
-}
-
-/* Iteration n of a nearest solve that slides until `last`. False: nothing can be done. */
-GPROJI_INTERNAL bool gproji_iterate_nearest(gproji_loop *loop, int32_t n, int32_t guided, int32_t last) {
-    gproj_system *s = loop->system;
-    uint32_t state = 1;
-    int32_t i;
-    if (n > guided && n <= last && gproji_slide(loop)) return true;
-    if (n > guided && gproji_holds(loop)) return false;
-    gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].role == GPROJI_GUARD && n <= guided)
-            s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
-    gproji_linearise(loop);
-    if (!gproji_iterate(loop)) return false;
-    /* To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
-       symmetric step cannot leave it. */
-    for (i = 0; n == guided && i < s->variable_count; ++i) {
-        state = state * 1664525u + 1013904223u;
-        s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
-    }
-    return true;
 }
 
 /* Do the constraints hold at a minimum of the wishes? */
@@ -12209,7 +12138,9 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
     int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
     int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
-    int32_t last = iterations - gproji_min(restore, iterations / 3);
+    int32_t last = iterations - gproji_min(restore, iterations / 3), i;
+    uint32_t state = 1;
+    bool moved;
     for (n = loop->result.iterations + 1; n <= iterations; ++n) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
@@ -12218,35 +12149,29 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
-        if (!gproji_iterate_nearest(loop, n, guided, last)) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
+        /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
+        moved = n > guided && n <= last && gproji_slide(loop);
+        if (!moved && (n <= guided || !gproji_holds(loop))) {
+            gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
+            for (i = 0; i < s->group_count; ++i)
+                if (s->group[i].role == GPROJI_GUARD && n <= guided)
+                    s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
+            gproji_linearise(loop);
+            moved = gproji_iterate(loop);
+        }
+        if (!moved) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
+        /* 2. To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
+           symmetric step cannot leave it. */
+        for (i = 0; n == guided && i < s->variable_count; ++i) {
+            state = state * 1664525u + 1013904223u;
+            s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
+        }
         gproji_see_nearest(loop);
-        gproji_report_iteration(loop, n);
-        if (!gproji_call_back(loop)) return GPROJ_CANCELLED;
+        if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         if (s->changed) gproji_see_nearest(loop);
     }
     if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
     return gproji_is_nearest(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
-}
-
-/* Writes the verdict's sentence if the constraints hold, and how near the nearest is. */
-GPROJI_INTERNAL void gproji_write_nearest_verdict(gproji_loop *loop) {
-    gproj_result *r = &loop->result;
-    const char *plural = r->iterations == 1 ? "" : "s", *more = "";
-    char figure[64];
-    if (!gproji_holds(loop) || r->worst_group < 0) {
-        gproji_format(figure, sizeof figure, "; projected gradient of the wishes %g", r->optimality);
-        gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
-        return;
-    }
-    if (r->outcome == GPROJ_CONVERGED) more = ", at a minimum of the wishes";
-    if (r->outcome == GPROJ_ITERATION_LIMIT) more = ", but more iterations would serve the wishes better";
-    if (r->outcome == GPROJ_STALLED) more = ", and no step serves the wishes better";
-    if (r->outcome == GPROJ_CANCELLED) more = ", cancelled by the caller";
-    if (r->outcome == GPROJ_TIME_OUT) more = ", but the time budget ran out before a minimum of the wishes";
-    gproji_format(r->message, sizeof r->message,
-                  "%s%s: %d iteration%s, largest residual %g (%s), projected gradient of the wishes %g",
-                  gproji_outcome_string(GPROJ_CONVERGED), more, r->iterations, plural, r->residual,
-                  loop->system->group[r->worst_group].name, r->optimality);
 }
 
 /* -- runs: a solve, or a part of it -- */
@@ -12288,43 +12213,36 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     return false;
 }
 
-/* The first run begins. */
-GPROJI_INTERNAL void gproji_start_loop(gproji_loop *loop) {
-    gproj_system *s = loop->system;
-    s->progress.settling = 0;
-    s->creeping = false;
-    if (loop->options.nearest) {
-        if (!gproji_start_multipliers(s)) {
-            gproji_fail_memory(&s->error);
-            return;
-        }
-        gproji_see_nearest(loop);
-    } else {
-        gproji_set_weights(loop, 1);
-        gproji_linearise(loop);
-    }
-    gproji_start_bounds(s);
-    loop->begun = true;
-}
-
-/* A further run begins, with all changes since the last one. */
-GPROJI_INTERNAL void gproji_resume_loop(gproji_loop *loop) {
+/* Begins the first run, or a further one with all changes since the last. */
+GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->progress.tangential = nearest;
-    if (nearest && !s->vector.sum) { /* a solve of the system in between has taken them */
+    if (nearest && (!loop->begun || !s->vector.sum)) { /* a solve of the system in between may have taken them */
         if (!gproji_start_multipliers(s)) {
             gproji_fail_memory(&s->error);
             return;
         }
         changed = true;
     }
+    if (!loop->begun) {
+        s->progress.settling = 0;
+        if (nearest) {
+            gproji_see_nearest(loop);
+        } else {
+            gproji_set_weights(loop, 1);
+            gproji_linearise(loop);
+        }
+        gproji_start_bounds(s);
+        loop->begun = true;
+        return;
+    }
     if (loop->restored || !s->evaluated) gproji_see_rows(loop);
     if (loop->restored && nearest) gproji_judge_nearest(loop);
     loop->restored = false;
     s->changed = changed;
     if (changed && nearest) gproji_see_nearest(loop);
-    if (gproji_see_changes(loop)) loop->best.residual = loop->best.merit = HUGE_VAL;
+    gproji_see_changes(loop);
 }
 
 /* Analyses the matrix, and returns the bytes that a run will take besides those that the system holds then: asks for
@@ -12359,10 +12277,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
     if (gproji_compile(s, loop->options.nearest) == GPROJ_OK) {
         gproji_lap(loop, GPROJ_PHASE_ANALYSE);
         s->solving = true;
-        if (loop->begun)
-            gproji_resume_loop(loop);
-        else
-            gproji_start_loop(loop);
+        gproji_begin_run(loop);
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
         s->solving = s->progress.tangential = false;
         loop->time.spent += loop->time.lap - loop->time.started;
@@ -12373,7 +12288,6 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         return true;
     }
     gproji_write_verdict(loop);
-    if (loop->options.nearest) gproji_write_nearest_verdict(loop);
     return !loop->paused;
 }
 
@@ -13203,43 +13117,6 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     return object ? gproji_mesh_done(object, gproji_mesh_build(object, &soup, error)) : NULL;
 }
 
-/* Refuses arrays that are missing or given twice, and strides that are too short. */
-GPROJI_INTERNAL gproj_code gproji_check_data(const gproj_mesh_data *data, gproj_error *error) {
-    const char *wrong = NULL;
-    size_t least;
-    if (!data) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: there are none");
-    least = 3 * (data->position ? sizeof(double) : sizeof(float));
-    if ((data->position != NULL) == (data->float_position != NULL))
-        wrong = "one of position and float_position is needed, and not both";
-    else if (data->position_stride && data->position_stride < least)
-        wrong = "position_stride is less than three numbers have";
-    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
-        wrong = "either face_vertex or short_face_vertex is needed";
-    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
-        wrong = "either face_degree or degree is needed";
-    if (wrong) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "mesh data: %s", wrong);
-    return gproji_check_counts(data->vertex_count, data->face_count, error);
-}
-
-/* Copies the positions to 3 * vertex_count doubles. Strides may leave numbers at odd addresses: hence memcpy. */
-GPROJI_INTERNAL void gproji_copy_positions(const gproj_mesh_data *data, double *position) {
-    size_t size = data->position ? sizeof(double) : sizeof(float), stride = data->position_stride, v, k;
-    const char *from = data->position ? (const char *)data->position : (const char *)data->float_position;
-    if (stride == 0) stride = 3 * size;
-    for (v = 0; v < (size_t)data->vertex_count; ++v) {
-        for (k = 0; k < 3; ++k) {
-            const char *at = from + v * stride + k * size;
-            float number;
-            if (data->position) {
-                memcpy(&position[3 * v + k], at, size);
-                continue;
-            }
-            memcpy(&number, at, size);
-            position[3 * v + k] = number;
-        }
-    }
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
     gproji_heap heap = gproji_heap_of(host);
     gproji_pool pool;
@@ -13247,22 +13124,44 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     double *position;
     int32_t *degree, *vertex = NULL, f;
     int64_t corners = 0, k;
+    size_t size = data && data->position ? sizeof(double) : sizeof(float), stride;
+    const char *wrong = NULL, *from;
     gproj_code code;
+    /* 1. No array may be missing or given twice, and no stride too short. */
     gproji_error_clear(error);
-    if (gproji_check_data(data, error)) return NULL;
+    if (!data)
+        wrong = "there are none";
+    else if ((data->position != NULL) == (data->float_position != NULL))
+        wrong = "one of position and float_position is needed, and not both";
+    else if (data->position_stride && data->position_stride < 3 * size)
+        wrong = "position_stride is less than three numbers have";
+    else if (data->face_count > 0 && (data->face_vertex != NULL) == (data->short_face_vertex != NULL))
+        wrong = "either face_vertex or short_face_vertex is needed";
+    else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
+        wrong = "either face_degree or degree is needed";
+    if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
+    if (wrong || gproji_check_counts(data->vertex_count, data->face_count, error)) return NULL;
+    /* 2. Room, for as many corners as the degrees sum up to. */
     gproji_pool_start(&pool, &heap);
     position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
     degree = (int32_t *)gproji_pool_take(&pool, data->face_count, sizeof *degree);
     for (f = 0; degree && f < data->face_count; ++f)
         degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
     code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
-    if (code == GPROJ_OK) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
-    if (code == GPROJ_OK && !(position && vertex)) code = gproji_fail_memory(error);
-    if (code == GPROJ_OK) {
-        gproji_copy_positions(data, position);
-        for (k = 0; k < corners; ++k) vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
-        mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
+    if (!code) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
+    if (!code && !(position && vertex)) code = gproji_fail_memory(error);
+    /* 3. The mesh. Strides may leave numbers at odd addresses: hence memcpy. */
+    stride = data->position_stride ? data->position_stride : 3 * size;
+    from = data->position ? (const char *)data->position : (const char *)data->float_position;
+    for (k = 0; !code && k < 3 * (int64_t)data->vertex_count; ++k) {
+        const char *at = from + (size_t)(k / 3) * stride + (size_t)(k % 3) * size;
+        float number = 0;
+        memcpy(data->position ? (void *)&position[k] : (void *)&number, at, size);
+        if (!data->position) position[k] = number;
     }
+    for (k = 0; !code && k < corners; ++k)
+        vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+    if (!code) mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
     gproji_pool_give_all(&pool);
     return mesh;
 }
@@ -13509,19 +13408,18 @@ GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const 
 
 GPROJI_INTERNAL void gproji_file_remove(const char *path) { unlink(path); }
 
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
-    old->exists = stat(path, &old->info) == 0;
-    old->regular = old->exists && S_ISREG(old->info.st_mode);
-}
-
-/* Follows symbolic links up to the name of the file itself, which need not exist; false in a circle. */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) {
+/* Follows symbolic links up to the name of the file itself, and looks whether there is one; false in a circle. */
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     char target[GPROJI_PATH_MAX];
     int32_t links;
     for (links = 0; links < GPROJI_LINKS_MAX; ++links) {
         ssize_t length = readlink(path, target, sizeof target);
         size_t folder = gproji_folder_length(path);
-        if (length <= 0) return true; /* no link */
+        if (length <= 0) { /* no link */
+            old->exists = stat(path, &old->info) == 0;
+            old->regular = old->exists && S_ISREG(old->info.st_mode);
+            return true;
+        }
         if (target[0] == '/') folder = 0;
         if (folder + (size_t)length >= GPROJI_PATH_MAX) return false;
         memcpy(path + folder, target, (size_t)length);
@@ -13619,12 +13517,14 @@ GPROJI_INTERNAL void gproji_file_remove(const char *path) {
     if (gproji_widen_path(&wide, path)) DeleteFileW(wide.text);
 }
 
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+/* Looks whether there is a file; MoveFileEx replaces a link itself. */
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     const unsigned long none = 0xffffffff, directory = 0x10, device = 0x40;
     gproji_wide_path wide;
     unsigned long attributes = gproji_widen_path(&wide, path) ? GetFileAttributesW(wide.text) : none;
     old->exists = attributes != none;
     old->regular = old->exists && !(attributes & (directory | device));
+    return true;
 }
 
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return (uint32_t)_getpid(); }
@@ -13673,18 +13573,15 @@ GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const 
 GPROJI_INTERNAL void gproji_file_remove(const char *path) { remove(path); }
 
 /* Nobody can tell; a rename will. */
-GPROJI_INTERNAL void gproji_look_at_old(gproji_old_file *old, const char *path) {
+GPROJI_INTERNAL bool gproji_find_old(gproji_old_file *old, char path[GPROJI_PATH_MAX]) {
     (void)path;
     old->exists = old->regular = false;
+    return true;
 }
 
 GPROJI_INTERNAL uint32_t gproji_process_number(void) { return 0; }
 
 #endif /* GPROJI_FILES */
-
-#if GPROJI_FILES != 1 /* MoveFileEx replaces a link itself; plain C knows none */
-GPROJI_INTERNAL bool gproji_follow_links(char path[GPROJI_PATH_MAX]) { return path != NULL; }
-#endif
 
 /* A save under way. */
 typedef struct gproji_saving {
@@ -13693,33 +13590,27 @@ typedef struct gproji_saving {
     char target[GPROJI_PATH_MAX], temporary[GPROJI_PATH_MAX];
 } gproji_saving;
 
-/* Makes a new file in the folder of the target. Names that differ between processes and threads save attempts. */
-GPROJI_INTERNAL bool gproji_create_temporary(gproji_saving *saving, const gproji_old_file *old) {
+/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
+GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
     uint32_t number = gproji_process_number() * 1664525 + (uint32_t)((uintptr_t)saving >> 4);
-    char *name = saving->temporary + saving->folder_length;
+    gproji_old_file old;
+    size_t length = strlen(path), folder;
     int32_t tries, digit;
-    memcpy(saving->temporary, saving->target, saving->folder_length);
+    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
+    memcpy(saving->target, path, length + 1);
+    if (!gproji_find_old(&old, saving->target)) return "its symbolic links lead in a circle, or too far";
+    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
+    folder = saving->folder_length = gproji_folder_length(saving->target);
+    if (folder + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
+    /* A new file beside it. Names that differ between processes and threads save attempts. */
+    memcpy(saving->temporary, saving->target, folder);
     for (tries = 0; tries < GPROJI_TEMPORARY_TRIES; ++tries) {
+        char *name = saving->temporary + folder;
         number = number * 1664525 + 1013904223; /* Knuth and Lewis */
         memcpy(name, "gproj-01234567.tmp", GPROJI_TEMPORARY_SIZE);
         for (digit = 0; digit < 8; ++digit) name[6 + digit] = "0123456789abcdef"[(number >> (28 - 4 * digit)) & 15];
-        if (gproji_file_create(&saving->file, saving->temporary, old)) return true;
+        if (gproji_file_create(&saving->file, saving->temporary, &old)) return NULL;
     }
-    return false;
-}
-
-/* Begins to save to a path. Returns NULL, else why that cannot be, as the end of a sentence. */
-GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char *path) {
-    gproji_old_file old;
-    size_t length = strlen(path);
-    if (length >= GPROJI_PATH_MAX) return "it is too long a path";
-    memcpy(saving->target, path, length + 1);
-    if (!gproji_follow_links(saving->target)) return "its symbolic links lead in a circle, or too far";
-    gproji_look_at_old(&old, saving->target);
-    if (old.exists && !old.regular) return "it is a folder, a device or a pipe; give the name of a file";
-    saving->folder_length = gproji_folder_length(saving->target);
-    if (saving->folder_length + GPROJI_TEMPORARY_SIZE > GPROJI_PATH_MAX) return "it is too long a path";
-    if (gproji_create_temporary(saving, &old)) return NULL;
     return "no file can be made in its folder; does that exist, and may you write there?";
 }
 
@@ -14016,20 +13907,6 @@ GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64
     return !reader->code;
 }
 
-/* Reads a vertex's line: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
-GPROJI_INTERNAL void gproji_off_vertex(gproji_reader *reader) {
-    double x[3] = {0, 0, 0};
-    int32_t k, line = reader->line;
-    for (k = 0; k < 3 && !reader->code; ++k) {
-        if (k && !gproji_next_word(reader))
-            gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
-        else
-            x[k] = gproji_word_number(reader);
-    }
-    gproji_next_line(reader);
-    gproji_push_vertex(reader, x, line);
-}
-
 /* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
 GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
     int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
@@ -14073,8 +13950,19 @@ GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
             gproji_stop(reader, GPROJ_ERROR_SIZE, reader->line, "a count of %l %s", count[k], k ? "faces" : "vertices");
     }
     gproji_next_line(reader);
-    /* 3. Vertices, a line each. */
-    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) gproji_off_vertex(reader);
+    /* 3. Vertices, a line each: x y z, then maybe colours, normals, texture coordinates, which are passed over. */
+    for (i = 0; i < count[0] && gproji_off_word(reader, i, count[0], "vertices"); ++i) {
+        double x[3] = {0, 0, 0};
+        int32_t line = reader->line;
+        for (k = 0; k < 3 && !reader->code; ++k) {
+            if (k && !gproji_next_word(reader))
+                gproji_stop(reader, GPROJ_ERROR_SYNTAX, line, "a vertex with %d numbers; write x y z on one line", k);
+            else
+                x[k] = gproji_word_number(reader);
+        }
+        gproji_next_line(reader);
+        gproji_push_vertex(reader, x, line);
+    }
     /* 4. Faces: the degree, then the corners. */
     for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
         gproji_off_face(reader, i, count[1]);
@@ -14370,29 +14258,27 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
     }
 }
 
-GPROJI_INTERNAL gproj_code gproji_load_into(gproji_mesh_object *object, const char *path, gproj_error *error) {
+GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
+    gproji_mesh_object *object;
     char quote[GPROJI_PATH_QUOTE_SIZE];
     void *text = NULL;
     size_t capacity = 0, size = 0;
     gproj_code code;
     gproji_file file;
+    if (!gproji_given(path, "path to load from", error)) return NULL;
+    object = gproji_mesh_begin(host, error);
+    if (!object) return NULL;
     if (!gproji_file_open(&file, path)) {
-        return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
-                           "'%s' cannot be opened; does it exist, and may you read it?",
-                           gproji_quote_path(path, quote));
+        code =
+            gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
+                        "'%s' cannot be opened; does it exist, and may you read it?", gproji_quote_path(path, quote));
+        return gproji_mesh_done(object, code);
     }
     code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
     gproji_file_close(&file);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
-    return code;
-}
-
-GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object;
-    if (!gproji_given(path, "path to load from", error)) return NULL;
-    object = gproji_mesh_begin(host, error);
-    return object ? gproji_mesh_done(object, gproji_load_into(object, path, error)) : NULL;
+    return gproji_mesh_done(object, code);
 }
 
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error) {
@@ -15268,18 +15154,18 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
     return NULL;
 }
 
-/* Checks the points, and finds the tangents and the hierarchy. */
-GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, gproj_error *error) {
+/* Ends every function that makes a curve: checks the points, and finds the tangents and the hierarchy. Returns the
+   curve, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
     const double zero[3] = {0, 0, 0};
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    gproj_code code = gproji_check_positions(count + 1, x, "point", error);
-    if (code) return code;
+    bool valid = gproji_check_positions(count + 1, x, "point", error) == GPROJ_OK;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
-    for (s = 0; s <= count; ++s)
+    for (s = 0; valid && s <= count; ++s)
         for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
-    for (s = 0; s < count; ++s, t += 3, x += 3) {
+    for (s = 0; valid && s < count; ++s, t += 3, x += 3) {
         gproji_sub3(x + 3, x, t);
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
@@ -15288,22 +15174,17 @@ GPROJI_INTERNAL gproj_code gproji_curve_build(gproj_curve *curve, bool closed, g
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
-    if (from < 0)
-        return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                           "all %d points of the curve are the same; it needs two different ones",
-                           count + (closed ? 0 : 1));
-    /* 2. Zeros take over the direction before them. */
-    last = curve->tangent + 3 * (size_t)from;
-    for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
-        if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
-    return gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)
-               ? GPROJ_OK
-               : gproji_fail_memory(error);
-}
-
-/* Ends every function that makes a curve: returns it, or NULL and keeps nothing. */
-GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    if (!gproji_curve_build(curve, closed, error)) return curve;
+    if (from >= 0) {
+        /* 2. Zeros take over the direction before them. */
+        last = curve->tangent + 3 * (size_t)from;
+        for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
+            if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
+        if (gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)) return curve;
+        gproji_fail_memory(error);
+    } else if (valid) {
+        gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                    "all %d points of the curve are the same; it needs two different ones", count + (closed ? 0 : 1));
+    }
     gproj_curve_destroy(curve);
     return NULL;
 }
@@ -15855,14 +15736,6 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
 
 /* -- elements -- */
 
-/* Adds a vertex; the position is not set. */
-GPROJI_INTERNAL int32_t gproji_edit_add_vertex(gproji_edit_store *s) {
-    int32_t v = s->count[GPROJI_EDIT_VERTEX]++;
-    s->count[GPROJI_EDIT_POSITION]++;
-    s->vertex_into[v] = v;
-    return v;
-}
-
 /* Adds an edge, whose half-edges are 2e and 2e + 1. */
 GPROJI_INTERNAL int32_t gproji_edit_add_edge(gproji_edit_store *s) {
     int32_t e = s->count[GPROJI_EDIT_EDGE]++;
@@ -15886,15 +15759,9 @@ GPROJI_INLINE void gproji_edit_insert(gproji_edit_store *s, int32_t before, int3
     s->next[h] = after, s->prev[after] = h;
 }
 
-/* Chooses vertex_halfedge, given an outgoing half-edge: at the boundary the one without a face. */
-GPROJI_INTERNAL void gproji_edit_anchor(gproji_edit_object *object, int32_t outgoing) {
-    gproji_edit_store *s = &object->now;
-    int32_t h = outgoing;
-    while (s->face[h] >= 0) {
-        h = gproji_rotate(&object->view, h);
-        if (h == outgoing) break;
-    }
-    s->vertex_halfedge[s->origin[h]] = h;
+/* Does half-edge h have a face with so many corners? */
+GPROJI_INLINE bool gproji_edit_sees(const gproji_edit_store *s, int32_t h, int32_t degree) {
+    return s->face[h] >= 0 && s->face_degree[s->face[h]] == degree;
 }
 
 /* The half-edge in a face that starts at a vertex; -1: no corner is there. */
@@ -15993,8 +15860,10 @@ GPROJI_INTERNAL int32_t gproji_polyline_count_runs(const gproji_edit_store *s, i
    it. */
 GPROJI_INTERNAL int32_t gproji_edit_split(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
-    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = gproji_edit_add_vertex(s);
+    int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], x = s->count[GPROJI_EDIT_VERTEX]++;
     int32_t onward = 2 * gproji_edit_add_edge(s) + (h & 1), back = onward ^ 1, p, q, i;
+    s->count[GPROJI_EDIT_POSITION]++;
+    s->vertex_into[x] = x;
     gproji_edit_between(s, a, b, t, x);
     s->origin[onward] = s->origin[g] = x, s->origin[back] = b;
     s->face[onward] = s->face[h], s->face[back] = s->face[g];
@@ -16053,53 +15922,51 @@ GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from
     return gproji_edit_divide(object, object->now.face[from], from, to, false);
 }
 
-/* Puts half-edge h into the place of half-edge `other`, which has the same ends; their edges become h's. */
-GPROJI_INTERNAL void gproji_edit_replace(gproji_edit_store *s, int32_t h, int32_t other) {
-    int32_t f = s->face[other];
-    gproji_edit_insert(s, s->prev[other], h, s->next[other]);
-    s->face[h] = f;
-    if (f >= 0 && s->face_halfedge[f] == other) s->face_halfedge[f] = h;
-    s->origin[other] = s->origin[other ^ 1] = -1;
-    s->edge_into[other / 2] = h / 2;
-}
-
 /* Takes half-edge h, whose edge has been collapsed, out of a face or boundary loop. Returns an outgoing half-edge at
    the vertex, and at *apex one at the third vertex of a triangle, or -1. */
 GPROJI_INTERNAL int32_t gproji_edit_unlink(gproji_edit_store *s, int32_t h, int32_t *apex) {
-    int32_t f = s->face[h], x = s->next[h], y = s->prev[h];
+    int32_t f = s->face[h], x = s->next[h], y = s->prev[h], kept, gone;
     *apex = -1;
     s->next[y] = x, s->prev[x] = y;
     if (f < 0) return x;
     if (s->face_halfedge[f] == h) s->face_halfedge[f] = x;
     if (--s->face_degree[f] > 2) return x;
-    s->face_halfedge[f] = -1; /* a triangle: the two edges that are left merge into the lower number */
-    if (x < y) {
-        gproji_edit_replace(s, x, y ^ 1);
-        *apex = x ^ 1;
-        return x;
-    }
-    gproji_edit_replace(s, y, x ^ 1);
-    *apex = y;
-    return y ^ 1;
+    /* A triangle: the two edges that are left merge into the lower number, which takes the other's outer side. */
+    s->face_halfedge[f] = -1;
+    kept = gproji_min(x, y), gone = gproji_max(x, y) ^ 1;
+    f = s->face[kept] = s->face[gone];
+    gproji_edit_insert(s, s->prev[gone], kept, s->next[gone]);
+    if (f >= 0 && s->face_halfedge[f] == gone) s->face_halfedge[f] = kept;
+    s->origin[gone] = s->origin[gone ^ 1] = -1;
+    s->edge_into[gone / 2] = kept / 2;
+    *apex = kept == x ? x ^ 1 : y;
+    return kept == x ? x : y ^ 1;
 }
 
 /* Collapses half-edge h's edge to parameter t from the origin, after gproji_check_collapse. Returns the vertex. */
 GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t h, double t) {
     gproji_edit_store *s = &object->now;
     int32_t a = s->origin[h], b = s->origin[h ^ 1], kept = gproji_min(a, b), gone = gproji_max(a, b);
-    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing, apex[2];
+    int32_t start = gone == a ? h : h ^ 1, i = start, outgoing[3];
     gproji_edit_between(s, a, b, t, kept);
     do {
         s->origin[i] = kept;
         i = gproji_rotate(&object->view, i);
     } while (i != start);
-    gproji_edit_unlink(s, h, &apex[0]);
-    outgoing = gproji_edit_unlink(s, h ^ 1, &apex[1]);
+    gproji_edit_unlink(s, h, &outgoing[1]);
+    outgoing[0] = gproji_edit_unlink(s, h ^ 1, &outgoing[2]);
     s->origin[h] = s->origin[h ^ 1] = -1, s->edge_into[h / 2] = -1;
     s->vertex_into[gone] = kept, s->vertex_halfedge[gone] = -1;
-    gproji_edit_anchor(object, outgoing);
-    for (i = 0; i < 2; ++i)
-        if (apex[i] >= 0) gproji_edit_anchor(object, apex[i]);
+    /* vertex_halfedge: at the boundary the one without a face. */
+    for (i = 0; i < 3; ++i) {
+        int32_t g = outgoing[i];
+        if (g < 0) continue;
+        while (s->face[g] >= 0) {
+            g = gproji_rotate(&object->view, g);
+            if (g == outgoing[i]) break;
+        }
+        s->vertex_halfedge[s->origin[g]] = g;
+    }
     if (!s->on_polyline[gone]) return kept;
     s->on_polyline[kept] = 1;
     for (i = 0; i < s->count[GPROJI_EDIT_POLYLINE_VERTEX]; ++i)
@@ -16107,14 +15974,10 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
-GPROJI_INTERNAL bool gproji_is_triangle(const gproji_edit_store *s, int32_t h) {
-    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 3;
-}
-
 /* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
 GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
     int32_t x, y;
-    if (!gproji_is_triangle(s, h)) return GPROJ_OK;
+    if (!gproji_edit_sees(s, h, 3)) return GPROJ_OK;
     x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
     if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
@@ -16149,8 +16012,8 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
         if (s->face[i] >= 0) s->face_mark[s->face[i]] = object->stamp;
         i = gproji_rotate(&object->view, i);
     } while (i != h);
-    left = gproji_is_triangle(s, h) ? s->origin[s->prev[h]] : -1;
-    right = gproji_is_triangle(s, g) ? s->origin[s->prev[g]] : -1;
+    left = gproji_edit_sees(s, h, 3) ? s->origin[s->prev[h]] : -1;
+    right = gproji_edit_sees(s, g, 3) ? s->origin[s->prev[g]] : -1;
     for (i = gproji_rotate(&object->view, g); i != g; i = gproji_rotate(&object->view, i)) {
         int32_t v = s->origin[i ^ 1], f = s->face[i];
         if (s->vertex_mark[v] == object->stamp && v != left && v != right)
@@ -16484,28 +16347,19 @@ typedef struct gproji_strip {
     int32_t *side; /* count: the rungs' origins */
 } gproji_strip;
 
-GPROJI_INLINE bool gproji_is_quad(const gproji_edit_store *s, int32_t h) {
-    return s->face[h] >= 0 && s->face_degree[s->face[h]] == 4;
-}
-
-/* The rung after h, across the quad at its left; -1 after the last. */
-GPROJI_INLINE int32_t gproji_strip_next(const gproji_edit_store *s, int32_t h) {
-    return gproji_is_quad(s, h) ? s->next[s->next[h]] ^ 1 : -1;
-}
-
 /* Walks along half-edge h's strip. */
 GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_pool *pool, int32_t h,
                                              gproji_strip *strip, gproj_error *error) {
     int32_t first = h, g, i;
     memset(strip, 0, sizeof *strip);
-    while (gproji_is_quad(s, first ^ 1)) { /* back to the first rung: h itself if the strip is closed */
+    while (gproji_edit_sees(s, first ^ 1, 4)) { /* back to the first rung: h itself if the strip is closed */
         first = s->next[s->next[first ^ 1]];
         if (first == h) break;
     }
     g = first;
     do {
         ++strip->count;
-        g = gproji_strip_next(s, g);
+        g = gproji_edit_sees(s, g, 4) ? s->next[s->next[g]] ^ 1 : -1; /* across the quad at the left */
     } while (g >= 0 && g != first);
     strip->closed = g == first;
     if (strip->count == 1)
@@ -16514,31 +16368,11 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
-    for (i = 0, g = first; i < strip->count; ++i, g = gproji_strip_next(s, g)) {
+    for (i = 0, g = first; i < strip->count; ++i, g = s->next[s->next[g]] ^ 1) {
         if (g == h) strip->given = i;
         strip->rung[i] = g, strip->side[i] = s->origin[g];
     }
     return GPROJ_OK;
-}
-
-/* Cuts a quad from the origin x of half-edge `from` to vertex y on the opposite rung. If the strip has cut it already,
-   from side to side, that cut is split at t and met there. */
-GPROJI_INTERNAL void gproji_strip_cross(gproji_edit_object *object, int32_t from, int32_t y, double t) {
-    gproji_edit_store *s = &object->now;
-    int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
-    if (to < 0) {
-        cut = s->next[s->next[from]]; /* from x: to the rung's end, to the cut, along it */
-        gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
-        from = cut ^ 1;
-        to = gproji_edit_corner(s, s->face[from], y);
-    }
-    gproji_edit_cut(object, from, to);
-}
-
-/* Cuts the triangle at which a strip ends, with a new corner at half-edge h's origin: as a quad it would lead on. */
-GPROJI_INTERNAL void gproji_strip_end(gproji_edit_object *object, int32_t h) {
-    const gproji_edit_store *s = &object->now;
-    if (gproji_is_quad(s, h)) gproji_edit_cut(object, h, s->next[s->next[h]]);
 }
 
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
@@ -16558,65 +16392,70 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
                            "no strip can be inserted at edge %d: its two quads have edge %d in common, too, and there "
                            "would be two edges between the new vertices",
                            strip.rung[0] / 2, strip.rung[1] / 2);
-    /* Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
+    /* 1. Rungs are split, quads cut, and a quad that is crossed twice gets one more vertex, edge, and cut. */
     for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
     if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, runs, error);
-    if (!code) {
-        for (i = 0; i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
-        if (!strip.closed) {
-            gproji_strip_end(object, s->next[strip.rung[0] ^ 1]);
-            gproji_strip_end(object, strip.rung[last]);
-        }
-        for (i = 0; i < last; ++i) gproji_strip_cross(object, strip.rung[i], s->origin[strip.rung[i + 1]], t);
-        if (strip.closed) gproji_strip_cross(object, strip.rung[last], s->origin[strip.rung[0]], t);
-        h = strip.rung[strip.given];
+    for (i = 0; !code && i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
+    /* 2. A triangle at an end of the strip is cut from its new corner: as a quad it would lead on. */
+    for (i = 0; !code && !strip.closed && i < 2; ++i) {
+        int32_t end = i == 0 ? s->next[strip.rung[0] ^ 1] : strip.rung[last];
+        if (gproji_edit_sees(s, end, 4)) gproji_edit_cut(object, end, s->next[s->next[end]]);
     }
+    /* 3. Each quad is cut from rung to rung. If the strip has cut it already, from side to side, that cut is split at t
+       and met there. */
+    for (i = 0; !code && i < last + strip.closed; ++i) {
+        int32_t from = strip.rung[i], y = s->origin[strip.rung[i < last ? i + 1 : 0]];
+        int32_t to = gproji_edit_corner(s, s->face[from], y), cut;
+        if (to < 0) {
+            cut = s->next[s->next[from]]; /* from the new vertex: to the rung's end, to the cut, along it */
+            gproji_edit_cut(object, from, gproji_edit_split(object, cut, 1 - t));
+            from = cut ^ 1;
+            to = gproji_edit_corner(s, s->face[from], y);
+        }
+        gproji_edit_cut(object, from, to);
+    }
+    if (!code) h = strip.rung[strip.given];
     gproji_pool_give_all(&pool);
     return code ? -1 : h / 2;
 }
 
-/* Collapses a strip's rungs one by one; those that are refused again, after the others, as long as that helps. */
-GPROJI_INTERNAL gproj_code gproji_strip_collapse(gproji_edit_object *object, gproji_strip *strip, double t,
-                                                 gproj_error *error) {
-    gproji_edit_store *s = &object->now;
-    int32_t left = strip->count, tried, i;
+GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
+    gproji_edit_object *object = gproji_edit_owner(edit, error);
+    gproji_edit_store *s = object ? &object->now : NULL, copy;
+    int32_t h = gproji_edit_given_edge(object, edge, t, error), left, tried, i;
+    char message[GPROJ_MESSAGE_SIZE];
+    gproji_strip strip;
+    gproji_pool pool;
     gproj_code code, refusal;
+    if (h < 0) return -1;
+    gproji_pool_start(&pool, &object->heap);
+    code = gproji_strip_take(s, &pool, h, &strip, error);
+    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
+    if (code) {
+        gproji_pool_give_all(&pool);
+        return -1;
+    }
+    /* Collapses rungs one by one; those that are refused again, after the others, as long as that helps. */
+    left = strip.count;
     do {
         tried = left, left = 0, refusal = GPROJ_OK;
         gproji_error_clear(error);
         for (i = 0; i < tried; ++i) {
-            int32_t e = gproji_edit_root(s->edge_into, strip->rung[i] / 2), h;
+            int32_t e = gproji_edit_root(s->edge_into, strip.rung[i] / 2);
             if (e < 0) continue; /* merged into another rung, if the strip crosses itself, and gone with that */
-            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip->side[i]) ? 2 * e : 2 * e + 1;
+            h = s->origin[2 * e] == gproji_edit_root(s->vertex_into, strip.side[i]) ? 2 * e : 2 * e + 1;
             code = gproji_check_collapse(object, h, error);
             if (!code) gproji_edit_collapse(object, h, t);
             if (!code) continue;
             refusal = code;
-            strip->rung[left] = strip->rung[i];
-            strip->side[left++] = strip->side[i];
+            strip.rung[left] = strip.rung[i];
+            strip.side[left++] = strip.side[i];
         }
     } while (left && left < tried);
-    return refusal;
-}
-
-GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
-    gproji_edit_object *object = gproji_edit_owner(edit, error);
-    int32_t h = gproji_edit_given_edge(object, edge, t, error);
-    char message[GPROJ_MESSAGE_SIZE];
-    gproji_edit_store copy;
-    gproji_strip strip;
-    gproji_pool pool;
-    gproj_code code;
-    if (h < 0) return -1;
-    gproji_pool_start(&pool, &object->heap);
-    code = gproji_strip_take(&object->now, &pool, h, &strip, error);
-    if (!code && !gproji_edit_save(object, &copy)) code = gproji_fail_memory(error);
-    if (!code) {
-        code = gproji_edit_settle(object, &copy, gproji_strip_collapse(object, &strip, t, error));
-        if (code && error) { /* the rung's reason, in a sentence about the strip */
-            gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
-            memcpy(error->message, message, sizeof message);
-        }
+    code = gproji_edit_settle(object, &copy, refusal);
+    if (code && error) { /* the rung's reason, in a sentence about the strip */
+        gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
+        memcpy(error->message, message, sizeof message);
     }
     gproji_pool_give_all(&pool);
     return code ? -1 : strip.count;
@@ -16642,13 +16481,6 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* Numbers a vertex that is in the dual, too. */
-GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual, int32_t vertex) {
-    int32_t number = dual->draft.soup.vertex_count++;
-    gproji_copy3(mesh->position + 3 * (size_t)vertex, dual->draft.position + 3 * (size_t)number);
-    dual->vertex[vertex] = number;
-}
-
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
@@ -16669,10 +16501,12 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
     for (e = 0; e < mesh->edge_count; ++e)
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
     gproji_fill(dual->vertex, mesh->vertex_count, -1);
-    for (v = 0; v < mesh->vertex_count; ++v)
-        if (gproji_is_corner(mesh, mesh->position, v)) gproji_dual_keep(mesh, dual, v);
-    for (v = 0; v < mesh->vertex_count; ++v)
-        if (mesh->vertex_halfedge[v] < 0) gproji_dual_keep(mesh, dual, v);
+    for (k = 0; k < 2; ++k)
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            if (k == 0 ? !gproji_is_corner(mesh, mesh->position, v) : mesh->vertex_halfedge[v] >= 0) continue;
+            gproji_copy3(mesh->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count);
+            dual->vertex[v] = soup->vertex_count++;
+        }
     /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
        corner. */
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -16785,31 +16619,25 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* A factor for offsets from a face's mean, so that no square underflows: 1 unless the face is tiny. */
-GPROJI_INTERNAL double gproji_face_unit(const gproj_mesh *mesh, const double *position, int32_t face,
-                                        const double mean[3]) {
-    static const double tiny = 1e-100, most = 1e300;
-    double d[3], extent = 0;
-    int32_t h = mesh->face_halfedge[face], k, i;
-    for (k = 0; k < mesh->face_degree[face] && extent < tiny; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
-        for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
-    }
-    return extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
-}
-
 /* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
 GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
                                        double normal[3]) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    double unit, du, dv;
+    static const double tiny = 1e-100, most = 1e300;
+    double extent = 0, unit, du, dv;
     int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
     gproji_set3(0, 0, 0, mean);
     for (k = 0; k < degree; ++k, h = mesh->next[h])
         gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
-    unit = gproji_face_unit(mesh, position, face, mean);
-    /* The longest direction first and then, from points without their part along it, the one across: so a narrow face
-       has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
+    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless the face is tiny. */
+    for (k = 0; k < degree && extent < tiny; ++k, h = mesh->next[h]) {
+        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+        for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
+    }
+    unit = extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
+    h = mesh->face_halfedge[face];
+    /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow
+       face has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
     for (k = 0; k < degree; ++k, h = mesh->next[h]) {
         gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
         for (i = 0; i < 3; ++i) d[i] *= unit;
@@ -16865,18 +16693,6 @@ GPROJI_INTERNAL bool gproji_circumcentre(const gproj_mesh *mesh, const double *p
 
 GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
     *least = gproji_fmin(*least, value), *most = gproji_fmax(*most, value);
-}
-
-/* The largest difference between a face's vertices in distance from the circumcentre; infinite without one. */
-GPROJI_INTERNAL double gproji_face_circularity(const gproj_mesh *mesh, int32_t face, const double mean[3],
-                                               const double normal[3]) {
-    double centre[3], least = HUGE_VAL, most = 0;
-    int32_t h = mesh->face_halfedge[face], k;
-    if (mesh->face_degree[face] == 3) return 0;
-    if (!gproji_circumcentre(mesh, mesh->position, face, mean, normal, centre)) return HUGE_VAL;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
-    return most - least;
 }
 
 /* -- normals and vertices -- */
@@ -17056,19 +16872,17 @@ GPROJI_INTERNAL double gproji_seen_area(const double a[3], const double b[3], co
     return gproji_dot3(n, axis);
 }
 
-/* Have a and b different signs, both clear of rounding? */
-GPROJI_INTERNAL bool gproji_are_opposite(double a, double b, double rounding) {
-    return (a > rounding && b < -rounding) || (a < -rounding && b > rounding);
-}
-
-/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`? */
+/* Do the segments at half-edges g and h cross properly, seen along the unit vector `axis`: has each its ends on both
+   sides of the other, clear of rounding? */
 GPROJI_INTERNAL bool gproji_sides_cross(const gproj_mesh *mesh, const double *position, int32_t g, int32_t h,
                                         const double axis[3]) {
     const double *a = gproji_corner_at(mesh, position, g), *b = gproji_corner_at(mesh, position, mesh->next[g]);
     const double *c = gproji_corner_at(mesh, position, h), *d = gproji_corner_at(mesh, position, mesh->next[h]);
     double rounding = 1e-12 * gproji_distance3(a, b) * gproji_distance3(c, d);
-    return gproji_are_opposite(gproji_seen_area(a, b, c, axis), gproji_seen_area(a, b, d, axis), rounding) &&
-           gproji_are_opposite(gproji_seen_area(c, d, a, axis), gproji_seen_area(c, d, b, axis), rounding);
+    double first = gproji_seen_area(a, b, c, axis), second = gproji_seen_area(a, b, d, axis);
+    if (!(gproji_fmin(first, second) < -rounding && gproji_fmax(first, second) > rounding)) return false;
+    first = gproji_seen_area(c, d, a, axis), second = gproji_seen_area(c, d, b, axis);
+    return gproji_fmin(first, second) < -rounding && gproji_fmax(first, second) > rounding;
 }
 
 /* Consecutive sides, from a half-edge on. */
@@ -17216,13 +17030,20 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
         m->area += area, squares += area * area;
-        m->circularity_max = gproji_fmax(m->circularity_max, gproji_face_circularity(mesh, f, mean, normal) / unit);
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
         m->bow_tie_faces += gproji_is_bow_tie(mesh, mesh->position, f, normal);
         m->planarity_mean += flatness / mesh->face_count;
         if (flatness > m->planarity_max) m->planarity_max = flatness, m->planarity_face = f;
+        if (mesh->face_degree[f] > 3) { /* vertices differ in distance from the circumcentre; infinitely without one */
+            double centre[3], least = HUGE_VAL, most = 0;
+            bool has_centre = gproji_circumcentre(mesh, mesh->position, f, mean, normal, centre);
+            int32_t h = mesh->face_halfedge[f], k;
+            for (k = 0; has_centre && k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+                gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
+            m->circularity_max = gproji_fmax(m->circularity_max, (has_centre ? most - least : HUGE_VAL) / unit);
+        }
         if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
             int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
             double first[3], second[3], joining[3], across[3], length;
@@ -17239,35 +17060,6 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
     mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
     if (mean_area > 0)
         m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
-}
-
-GPROJI_INTERNAL void gproji_measure_change(const gproj_mesh *mesh, const double *original, gproj_measures *m) {
-    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge = gproji_mean_edge(mesh, original);
-    double sum = 0, squares = 0, before[3], now[3];
-    int32_t v, f, k;
-    for (v = 0; v < mesh->vertex_count; ++v)
-        for (k = 0; k < 3; ++k) {
-            double x = original[3 * (size_t)v + (size_t)k];
-            if (v == 0 || x < low[k]) low[k] = x;
-            if (v == 0 || x > high[k]) high[k] = x;
-        }
-    diagonal = gproji_distance3(low, high);
-    if (!(diagonal > 0)) diagonal = 1;
-    if (!(edge > 0)) edge = 1;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
-        sum += d, squares += d * d;
-        m->deviation_max = gproji_fmax(m->deviation_max, d / diagonal);
-    }
-    if (mesh->vertex_count) {
-        m->deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
-        m->displacement_mean = sum / mesh->vertex_count / edge;
-    }
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproji_area_vector(mesh, original, f, before);
-        gproji_area_vector(mesh, mesh->position, f, now);
-        m->turned_faces += gproji_dot3(before, now) < 0;
-    }
 }
 
 GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean) {
@@ -17291,10 +17083,12 @@ GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planari
 GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *original, double *planarity) {
     gproji_normals normals;
     gproj_measures m;
-    int32_t v, e;
+    double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge, sum = 0, squares = 0, before[3], now[3];
+    int32_t v, e, f, k;
     memset(&m, 0, sizeof m);
     m.planarity_face = -1;
     if (!mesh) return m;
+    /* 1. Sizes and shape properties. */
     normals = gproji_normals_of(mesh, mesh->position);
     m.mean_edge = gproji_mean_edge(mesh, mesh->position);
     for (e = 0; e < mesh->edge_count; ++e) {
@@ -17310,7 +17104,31 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
         m.gauss_variation += gproji_gauss_area(&normals, v);
         m.conicality_max = gproji_fmax(m.conicality_max, gproji_vertex_conicality(&normals, v));
     }
-    if (original) gproji_measure_change(mesh, original, &m);
+    if (!original) return m;
+    /* 2. Displacements from the original, relative to the diagonal of its box and to its mean edge. */
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (k = 0; k < 3; ++k) {
+            double x = original[3 * (size_t)v + (size_t)k];
+            if (v == 0 || x < low[k]) low[k] = x;
+            if (v == 0 || x > high[k]) high[k] = x;
+        }
+    diagonal = gproji_distance3(low, high), edge = gproji_mean_edge(mesh, original);
+    if (!(diagonal > 0)) diagonal = 1;
+    if (!(edge > 0)) edge = 1;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
+        sum += d, squares += d * d;
+        m.deviation_max = gproji_fmax(m.deviation_max, d / diagonal);
+    }
+    if (mesh->vertex_count) {
+        m.deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
+        m.displacement_mean = sum / mesh->vertex_count / edge;
+    }
+    for (f = 0; f < mesh->face_count; ++f) {
+        gproji_area_vector(mesh, original, f, before);
+        gproji_area_vector(mesh, mesh->position, f, now);
+        m.turned_faces += gproji_dot3(before, now) < 0;
+    }
     return m;
 }
 
@@ -17431,8 +17249,8 @@ GPROJ_API gproj_spoiled gproj_measure_spoiled(const gproj_mesh *mesh, const doub
 }
 
 /* ============================================================================================================
-   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector, mesh,
-   measure.
+   >>offset   Parallel meshes at constant distance, and supports between them. Uses platform, memory, error, vector,
+   mesh, measure.
 
    Based on Pottmann, Liu, Wallner, Bobenko, Wang: Geometry of multi-layer freeform structures for architecture (2007),
    and Liu, Pottmann, Wallner, Yang, Wang: Geometric modeling with conical meshes and developable surfaces (2006).
@@ -17877,11 +17695,6 @@ typedef struct gproji_patch {
     int32_t vertices;
 } gproji_patch;
 
-typedef struct gproji_flat {
-    double *xy; /* 2 * vertices, in the plane */
-    size_t capacity;
-} gproji_flat;
-
 typedef struct gproji_filling {
     gproji_heap *heap;
     gproji_pool pool; /* holds `seen` and `border` */
@@ -17901,7 +17714,8 @@ typedef struct gproji_filling {
     gproji_ints polygon; /* patch outlines, one after the other: 2 * vertex + (is it a patch corner) */
     gproji_ints patch;   /* outline ends in `polygon`; negative: the patch has been cut */
     gproji_ints quad;    /* 4 vertices each */
-    gproji_flat flat;
+    double *flat;        /* 2 * vertices: in the plane */
+    size_t flat_capacity;
     int32_t vertices;
     int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
     int32_t cut_vertices;   /* then those on cuts */
@@ -18493,10 +18307,10 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    void *block = f->flat.xy;
-    if (!gproji_reserve(f->heap, &block, &f->flat.capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
-    f->flat.xy = (double *)block;
-    f->flat.xy[2 * (size_t)f->vertices] = x, f->flat.xy[2 * (size_t)f->vertices + 1] = y;
+    void *block = f->flat;
+    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
+    f->flat = (double *)block;
+    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
 }
@@ -18539,7 +18353,7 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
     }
     if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
     /* A simple curve may have chords that cross. */
-    if (!gproji_find_crossing(f->heap, f->flat.xy, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     for (from = 0; f->start.data[from + 1] <= i;) ++from;
     for (to = 0; f->start.data[to + 1] <= j;) ++to;
@@ -18574,7 +18388,7 @@ GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_
 GPROJI_INLINE int32_t gproji_outline_vertex(const gproji_outline *o, int32_t i) { return o->entry[i % o->count] >> 1; }
 
 GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) {
-    return gproji_inner_angle(o->f->flat.xy, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
+    return gproji_inner_angle(o->f->flat, gproji_outline_vertex(o, i), gproji_outline_vertex(o, i + 1),
                               gproji_outline_vertex(o, i + o->count - 1));
 }
 
@@ -18616,7 +18430,7 @@ GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int3
 
 /* Tries cuts from place i to place j, over edge numbers with the right parity; a cheaper one replaces `best`. */
 GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t j, gproji_cut_line *best) {
-    const double *xy = o->f->flat.xy;
+    const double *xy = o->f->flat;
     int32_t a = gproji_outline_vertex(o, i), b = gproji_outline_vertex(o, j), edges, wanted, end, k;
     double at[2][2], length = gproji_distance2(xy, a, b), nearest = 0.7 * o->edge, cost = 0;
     bool corner[2][2];
@@ -18707,14 +18521,14 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
         int32_t a, b, first = f->vertices;
         for (k = 0; k < o.count; ++k)
             o.edge +=
-                gproji_distance2(f->flat.xy, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
+                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
         cut = gproji_find_cut(&o);
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
             double t = (double)k / cut.edges;
-            if (!gproji_add_flat(f, (1 - t) * f->flat.xy[2 * b] + t * f->flat.xy[2 * a],
-                                 (1 - t) * f->flat.xy[2 * b + 1] + t * f->flat.xy[2 * a + 1]))
+            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
                 return false;
         }
         if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
@@ -18808,7 +18622,7 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; done && i < n; ++i) {
         int32_t v = gproji_outline_vertex(o, place[p.first] + i);
         number[patch.loop.data[i]] = v;
-        x += f->flat.xy[2 * v] / n, y += f->flat.xy[2 * v + 1] / n;
+        x += f->flat[2 * v] / n, y += f->flat[2 * v + 1] / n;
     }
     for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
@@ -18955,9 +18769,9 @@ GPROJI_INTERNAL double gproji_corner_distortion(const double z[4], double epsilo
 
 GPROJI_INTERNAL void gproji_corner_edges(const gproji_untangling *u, int32_t corner, double z[4]) {
     const int32_t *quad = u->f->quad.data;
-    const double *p = u->f->flat.xy + 2 * (size_t)quad[corner],
-                 *q = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_next(corner)],
-                 *r = u->f->flat.xy + 2 * (size_t)quad[gproji_quad_previous(corner)];
+    const double *p = u->f->flat + 2 * (size_t)quad[corner],
+                 *q = u->f->flat + 2 * (size_t)quad[gproji_quad_next(corner)],
+                 *r = u->f->flat + 2 * (size_t)quad[gproji_quad_previous(corner)];
     double s = u->edge[corner / 4];
     z[0] = (q[0] - p[0]) / s, z[1] = (q[1] - p[1]) / s, z[2] = (r[0] - p[0]) / s, z[3] = (r[1] - p[1]) / s;
 }
@@ -19010,7 +18824,7 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
-    double *moving = f->flat.xy + 2 * (size_t)f->boundary, before, slope, length = 1;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
@@ -19034,7 +18848,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
 /* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
 GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     int32_t unknowns = 2 * (f->vertices - f->boundary), quads = (int32_t)f->quad.count / 4, q, i, j, n;
-    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat.xy);
+    gproj_code code = gproji_fill_harmonically(f, f->cut_vertices, 2, f->flat);
     gproji_untangling u;
     double *size;
     if (code || unknowns == 0) return code;
@@ -19050,8 +18864,8 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
     /* 1. Wanted edges: the boundary's own, harmonic inside. */
     size = u.start; /* still free, and large enough */
     for (i = 0; !code && i < f->boundary; ++i)
-        size[i] = 0.5 * (gproji_distance2(f->flat.xy, i, (i + 1) % f->boundary) +
-                         gproji_distance2(f->flat.xy, i, (i + f->boundary - 1) % f->boundary));
+        size[i] = 0.5 * (gproji_distance2(f->flat, i, (i + 1) % f->boundary) +
+                         gproji_distance2(f->flat, i, (i + f->boundary - 1) % f->boundary));
     if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, size);
     for (q = 0; !code && q < quads; ++q) {
         const int32_t *v = f->quad.data + 4 * (size_t)q;
@@ -19106,8 +18920,8 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     for (v = f->boundary; !code && v < f->vertices; ++v) {
         double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
-        gproji_add_scaled3(f->flat.xy[2 * (size_t)v], f->across, out);
-        gproji_add_scaled3(f->flat.xy[2 * (size_t)v + 1], f->up, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v], f->across, out);
+        gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
     if (!code) {
@@ -19118,24 +18932,6 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     }
     gproji_pool_give_all(&pool);
     return code;
-}
-
-GPROJI_INTERNAL void gproji_describe_filling(const gproji_filling *f, const gproj_mesh *mesh, gproj_fill_info *info) {
-    int32_t i, n = (int32_t)f->quad.count;
-    info->boundary_count = f->boundary, info->side_count = f->sides, info->patch_count = f->leaves;
-    for (i = f->boundary; i < f->vertices; ++i) {
-        int32_t valence = gproj_mesh_valence(mesh, i);
-        info->irregular_count += valence != 4;
-        info->min_valence = i == f->boundary ? valence : gproji_min(info->min_valence, valence);
-        info->max_valence = gproji_max(info->max_valence, valence);
-    }
-    for (i = 0; i < n; ++i) {
-        double angle = gproji_inner_angle(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
-                                          f->quad.data[gproji_quad_previous(i)]) *
-                       (180 / GPROJI_PI);
-        if (i == 0 || angle < info->min_angle) info->min_angle = angle;
-        if (i == 0 || angle > info->max_angle) info->max_angle = angle;
-    }
 }
 
 /* Fills the outline in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
@@ -19150,11 +18946,10 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
             int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
-            double x = f->flat.xy[2 * next] - f->flat.xy[2 * before],
-                   y = f->flat.xy[2 * next + 1] - f->flat.xy[2 * before + 1];
+            double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
-            depth *= gproji_fmin(gproji_distance2(f->flat.xy, i, next), gproji_distance2(f->flat.xy, i, before));
-            if (!gproji_add_flat(f, f->flat.xy[2 * i] - depth * y, f->flat.xy[2 * i + 1] + depth * x) ||
+            depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
+            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
                 !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
                 return gproji_fail_memory(f->error);
         }
@@ -19177,7 +18972,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     code = gproji_place_vertices(f);
     n = (int32_t)f->quad.count;
     for (i = 0; i < n; ++i)
-        if (!(gproji_turn2(f->flat.xy, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
+        if (!(gproji_turn2(f->flat, f->quad.data[i], f->quad.data[gproji_quad_next(i)],
                            f->quad.data[gproji_quad_previous(i)]) > 0))
             break;
     *good = i == n;
@@ -19206,6 +19001,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
+    int32_t i;
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
@@ -19222,9 +19018,22 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_divide_curve(&f);
     if (!code) code = gproji_fill_outline(&f);
     if (!code) code = gproji_build_filling(&f, object);
-    if (!code) gproji_describe_filling(&f, &object->mesh, &found);
+    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides, found.patch_count = f.leaves;
+    for (i = f.boundary; !code && i < f.vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(&object->mesh, i);
+        found.irregular_count += valence != 4;
+        found.min_valence = i == f.boundary ? valence : gproji_min(found.min_valence, valence);
+        found.max_valence = gproji_max(found.max_valence, valence);
+    }
+    for (i = 0; !code && i < (int32_t)f.quad.count; ++i) {
+        double angle = gproji_inner_angle(f.flat, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
+                                          f.quad.data[gproji_quad_previous(i)]) *
+                       (180 / GPROJI_PI);
+        if (i == 0 || angle < found.min_angle) found.min_angle = angle;
+        if (i == 0 || angle > found.max_angle) found.max_angle = angle;
+    }
     gproji_pool_give_all(&f.pool);
-    gproji_give(f.heap, f.flat.xy, f.flat.capacity, 2 * sizeof(double));
+    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
     gproji_ints_give(f.heap, &f.corner);
     gproji_ints_give(f.heap, &f.start);
     gproji_ints_give(f.heap, &f.polygon);

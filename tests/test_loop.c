@@ -1177,7 +1177,7 @@ GPROJT_TEST(metric_comes_back) {
     }
     GPROJT_CHECK(gproji_begin_loop(&loop, s, 10, NULL) && loop.stiff);
     GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
-    gproji_start_loop(&loop);
+    gproji_begin_run(&loop);
     gproji_stiffen(&loop, 0);
     GPROJT_CHECK(s->group[1].weight == 0);
     gproji_system_forget(s);

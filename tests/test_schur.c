@@ -129,7 +129,7 @@ static void gprojt_begin(gproj_form *form, bool skip_guard) {
     GPROJT_REQUIRE(gproji_begin_solve(form, 20, &options));
     GPROJT_REQUIRE(gproji_compile(form->system, false) == GPROJ_OK);
     form->system->solving = true;
-    gproji_start_loop(&form->solve.loop);
+    gproji_begin_run(&form->solve.loop);
     form->system->solving = false;
 }
 
