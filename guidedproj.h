@@ -10803,6 +10803,8 @@ typedef struct gproji_loop {
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
     double epsilon_least; /* lower end of the eps that follows the residual; less if steps fall short */
+    double fallen;        /* the residual when its fall was looked at last, */
+    int32_t fall_seen;    /* and the iterations then */
     bool stiff;           /* metric groups have a weight in this solve */
     double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     bool factored;        /* the last attempt found a step, whether good or not */
@@ -11625,6 +11627,20 @@ GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
     return true;
 }
 
+/* Has this solve come near to its end, and then only crept nearer? Safeguards may ask for less then. */
+GPROJI_INTERNAL bool gproji_creeps(const gproj_system *s) { return s->creeping; }
+
+/* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
+   are patient: they are made where this one has ended badly. */
+GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
+    double residual = loop->standing.residual;
+    if (loop->result.iterations < loop->fall_seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
+    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->fallen)
+        loop->system->creeping = true;
+    loop->fallen = residual;
+    loop->fall_seen = loop->result.iterations;
+}
+
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11633,6 +11649,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
+        gproji_watch_fall(loop);
         /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
            counts the iterations since the wishes have faded. */
         n = loop->result.iterations + 1;
@@ -12227,6 +12244,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     }
     if (!loop->begun) {
         s->progress.settling = 0;
+        s->creeping = false;
         if (nearest) {
             gproji_see_nearest(loop);
         } else {
