@@ -19788,11 +19788,6 @@ GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
     return gproji_add_points(gproji_new_selected_part(form, &gproji_closeness_rule, gproji_select_all), NULL, weight);
 }
 
-/* The library's own guidance. */
-GPROJI_INTERNAL void gproji_add_default_closeness(gproj_form *form) {
-    gproji_add_points(gproji_new_selected_part(form, &gproji_default_closeness_rule, gproji_select_all), NULL, 0);
-}
-
 /* -- planar faces -- */
 
 /* form->work.area at the system's x. */
@@ -22973,7 +22968,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
     gproji_corner_area(part->form->mesh, x, h, area);
     has = gproji_dot3(area, m) / guard->size[h];
-    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_set_corner_terms */
+    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
     for (t = 0; t < GPROJI_CORNER_TERMS; t += 6)
         for (k = 0; k < 3; ++k) {
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
@@ -22997,40 +22992,23 @@ GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const doub
 }
 
 /* Linearises the rows that act, with the normals at x. */
-GPROJI_INTERNAL void gproji_linearise_corners(const gproji_part *part) {
-    gproj_system *system = part->form->system;
+GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
+                                            const gproj_progress *progress) {
+    const gproji_part *part = (const gproji_part *)user;
     const gproji_corners *guard = gproji_corners_of(part);
-    const gproji_group *g = gproji_group_at(system, part->group);
+    const gproji_group *g = gproji_group_at(system, group);
     const double *x = gproj_system_values(system);
     int32_t r, count;
+    (void)progress;
     for (r = 0; r < g->row_count; ++r) {
-        gproj_term *term = gproji_row_terms(system, part->group, r, &count);
+        gproj_term *term = gproji_row_terms(system, group, r, &count);
         int32_t item = guard->item[r];
         double asked;
         if (!(g->row[r].weight > 0)) continue;
         asked = item < guard->edges ? gproji_linearise_corner(part, x, item, term)
                                     : gproji_linearise_edge(part, x, item - guard->edges, term);
-        gproji_place_row(system, part->group, r, g->row[r].weight, -asked);
+        gproji_place_row(system, group, r, g->row[r].weight, -asked);
     }
-}
-
-GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
-                                            const gproj_progress *progress) {
-    (void)system, (void)group, (void)progress;
-    gproji_linearise_corners((const gproji_part *)user);
-}
-
-/* Sets the terms of a corner, without coefficients: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products
-   a_x b_y, - a_y b_x (m_z), a_y b_z, - a_z b_y (m_x), ... */
-GPROJI_INTERNAL void gproji_set_corner_terms(const gproj_mesh *mesh, int32_t h, gproj_term *term) {
-    int32_t vertex[3], c, k, count = 0;
-    for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
-    for (c = 0; c < 3; ++c)
-        for (k = 0; k < 3; ++k) {
-            int32_t a = vertex[c], b = vertex[(c + 1) % 3];
-            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
-            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
-        }
 }
 
 /* Adds the row of an item, without a weight yet. Returns the number, -1 after an error. */
@@ -23039,13 +23017,18 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
     int32_t edge = item - guard->edges, h = edge < 0 ? item / 2 : mesh->face[2 * edge] < 0 ? 2 * edge + 1 : 2 * edge;
-    int32_t row;
-    if (edge < 0)
-        gproji_set_corner_terms(mesh, h, term);
-    else
-        gproji_set_length_terms(mesh, edge, 0, term);
-    row = gproji_add_safeguard_row(part->form->system, part->group, edge < 0 ? GPROJI_CORNER_TERMS : 9, term, 0,
-                                   mesh->face[h]);
+    int32_t vertex[3] = {mesh->origin[h], mesh->origin[mesh->next[h]], mesh->origin[mesh->next[mesh->next[h]]]};
+    int32_t count = 0, c, k, row;
+    /* A corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
+       a_y b_z, - a_z b_y (m_x), ...; coefficients by gproji_linearise_corner. */
+    for (c = 0; edge < 0 && c < 3; ++c)
+        for (k = 0; k < 3; ++k) {
+            int32_t a = 3 * vertex[c], b = 3 * vertex[(c + 1) % 3];
+            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
+            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
+        }
+    if (edge >= 0) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
+    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, mesh->face[h]);
     if (row < 0) return -1;
     guard->item[row] = item;
     guard->row[item] = row;
@@ -23127,21 +23110,8 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
                          item < guard->edges ? sqrt(guard->size[item / 2]) : guard->length[item - guard->edges], 0);
         woken = true;
     }
-    if (woken) gproji_linearise_corners(part);
+    if (woken) gproji_refresh_corners(part, system, part->group, NULL);
     return woken;
-}
-
-/* Has an edge become short, and lost most of the length in the step to x? */
-GPROJI_INTERNAL bool gproji_refuse_edges(const gproji_part *part, const double *before, const double *x) {
-    const gproj_mesh *mesh = part->form->mesh;
-    const double *length = gproji_corners_of(part)->length;
-    int32_t e;
-    for (e = 0; e < mesh->edge_count; ++e) {
-        double now = gproji_edge_length(mesh, x, e);
-        if (now < gproji_corner_least * length[e] && now < gproji_edge_kept * gproji_edge_length(mesh, before, e))
-            return true;
-    }
-    return false;
 }
 
 /* Has a corner become small, and lost most of the area in the step to x, or an edge the length? */
@@ -23149,7 +23119,7 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
     const gproj_form *form = (const gproj_form *)user;
     const gproji_part *part = gproji_acting_corners(form);
     const gproj_mesh *mesh = form->mesh;
-    int32_t f, h, c;
+    int32_t f, h, c, e;
     for (f = 0; part && f < mesh->face_count; ++f) {
         const double *size = gproji_corners_of(part)->size;
         double m[3], area[3], now, had;
@@ -23165,7 +23135,12 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
             gproji_corner_normal(form, x, before, f, m);
         }
     }
-    return part && gproji_refuse_edges(part, before, x);
+    for (e = 0; part && e < mesh->edge_count; ++e) {
+        double length = gproji_corners_of(part)->length[e], now = gproji_edge_length(mesh, x, e);
+        if (now < gproji_corner_least * length && now < gproji_edge_kept * gproji_edge_length(mesh, before, e))
+            return true;
+    }
+    return false;
 }
 
 /* Passes the rows during a solve, and the sizes and axes from when it began. */
@@ -23189,7 +23164,7 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
         else
             gproji_pass_safeguard_row(stream, s, part->group, guard->row[item], passing);
     }
-    if (stream->mode == GPROJI_READ) gproji_linearise_corners(part);
+    if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, NULL);
 }
 
 static const gproji_acts gproji_corner_acts = {gproji_refresh_corners, NULL, NULL, gproji_pass_corners};
@@ -23260,29 +23235,6 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
 
 /* -- equilibrium -- */
 
-/* Finds the three rows of equilibrium with the largest |phi|, of different vertices; -1 if there are fewer. */
-GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3]) {
-    const gproji_group *g = gproji_group_at(form->system, form->statics->group);
-    double phi[3] = {0, 0, 0};
-    int32_t r, k;
-    for (k = 0; k < 3; ++k) vertex[k] = -1;
-    for (r = 0; r < g->row_count; ++r) {
-        double size = fabs(g->row[r].phi);
-        int32_t v = g->row[r].element;
-        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
-        if (k == 3) k = 2;
-        if (!(size > phi[k])) continue;
-        phi[k] = size;
-        vertex[k] = v;
-        for (; k > 0 && phi[k] > phi[k - 1]; --k) {
-            double other = phi[k - 1];
-            int32_t w = vertex[k - 1];
-            phi[k - 1] = phi[k], vertex[k - 1] = vertex[k];
-            phi[k] = other, vertex[k] = w;
-        }
-    }
-}
-
 /* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a
    bound on forces, does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
@@ -23291,13 +23243,25 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
     size_t length = strlen(result->message);
+    double phi[3] = {0, 0, 0};
     char others[48];
-    int32_t vertex[3];
+    int32_t vertex[3] = {-1, -1, -1}, r, k;
+    const gproji_group *g;
     gproj_forces forces;
     if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
         return false;
     forces = gproj_measure_forces(form, NULL);
-    gproji_worst_balanced(form, vertex);
+    /* The three rows with the largest |phi|, of different vertices; -1 if there are fewer. */
+    g = gproji_group_at(form->system, s->group);
+    for (r = 0; r < g->row_count; ++r) {
+        double size = fabs(g->row[r].phi);
+        int32_t v = g->row[r].element;
+        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
+        if (k == 3) k = 2;
+        if (!(size > phi[k])) continue;
+        for (; k > 0 && size > phi[k - 1]; --k) phi[k] = phi[k - 1], vertex[k] = vertex[k - 1];
+        phi[k] = size, vertex[k] = v;
+    }
     gproji_format(others, sizeof others, "vertex ");
     if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
     gproji_format(result->message + length, sizeof result->message - length,
@@ -23569,17 +23533,36 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
 
 /* -- damage -- */
 
-/* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
-GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
+/* Counts the damage since gproj_form_create. A mesh can satisfy everything and yet be spoiled: the verdict says so. */
+GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
     static const char *const words[GPROJI_DAMAGE_COUNT][2] = {
         {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
         {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
         {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
+    static const char help[] =
+        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
+        "keep it whole";
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    size_t size = sizeof result->message, length = strlen(result->message);
+    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
     const char *between = "";
+    char *text = result->message;
+    gproji_damages d;
     int32_t kind;
+    gproji_find_damages(mesh, x, form->original, &d);
+    result->spoiled = gproji_spoiled_of(&d);
+    if (result->outcome != GPROJ_CONVERGED &&
+        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
+        return; /* there is worse to tell */
+    if (shrunk < 0.2)
+        gproji_format(text + length, size - length,
+                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+    if (shrunk < 0.2 || result->spoiled.total == 0) return;
+    /* All kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
+    length = gproji_append(text, size, length, "; but the mesh is spoiled: ", 27);
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
-        int32_t count = d->count[kind], at = d->first[kind];
-        size_t length = strlen(text);
+        int32_t count = d.count[kind], at = d.first[kind];
         if (count == 0) continue;
         gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
                       count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
@@ -23589,34 +23572,10 @@ GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_da
                           mesh->origin[2 * at + 1]);
         else
             gproji_append(text, size, length, ")", 1);
+        length = strlen(text);
         between = ", ";
     }
-}
-
-/* Counts the damage since gproj_form_create. A mesh can satisfy everything and yet be spoiled: the verdict says so. */
-GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
-    static const char help[] =
-        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
-        "keep it whole";
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    size_t size = sizeof result->message, length = strlen(result->message);
-    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
-    gproji_damages d;
-    gproji_find_damages(mesh, x, form->original, &d);
-    result->spoiled = gproji_spoiled_of(&d);
-    if (result->outcome != GPROJ_CONVERGED &&
-        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
-        return; /* there is worse to tell */
-    if (shrunk < 0.2) {
-        gproji_format(result->message + length, size - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
-    } else if (result->spoiled.total > 0) {
-        length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
-        gproji_list_damages(mesh, &d, result->message, size);
-        length = strlen(result->message);
-        if (length + sizeof help <= size) gproji_append(result->message, size, length, help, sizeof help - 1);
-    }
+    if (length + sizeof help <= size) gproji_append(text, size, length, help, sizeof help - 1);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
@@ -23684,6 +23643,11 @@ GPROJI_INTERNAL void gproji_store_positions(gproj_form *form, const double *befo
         else
             gproji_copy3(before + i, form->mesh->position + i);
     }
+}
+
+/* Puts the mesh back to its positions before the solve or the drag. */
+GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
 /* Is there a wish of the caller's, or for the release of a drag, with a weight? */
@@ -23762,27 +23726,19 @@ static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          
 static const gproji_rule gproji_drag_handles_rule = {"drag handles",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
                                                      GPROJI_OWN_DRAG_HANDLES, GPROJI_ORDINARY, NULL};
 
-GPROJI_INTERNAL void gproji_add_drag_fairness(gproj_form *form) {
-    gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
-}
-
-GPROJI_INTERNAL void gproji_add_drag_handles(gproj_form *form) {
-    gproji_add_points(gproji_new_selected_part(form, &gproji_drag_handles_rule, gproji_select_all), NULL, 0);
-}
-
 /* Adds a group of the library's own, without a weight, if it is missing. */
 GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
-    static void (*const add[GPROJI_OWN_COUNT])(gproj_form *) = {
-        NULL,                         /* the caller's */
-        gproji_add_default_closeness, /* in the order of gproji_own */
-        gproji_add_guard,
-        gproji_add_force_guidance,
-        gproji_add_drag_fairness,
-        gproji_add_drag_handles,
-        gproji_add_metric,
-        gproji_add_corners,
-        gproji_add_force_metric};
-    if (gproji_form_ready(form) && !gproji_own_part(form, own)) add[own](form);
+    const gproji_rule *points = own == GPROJI_OWN_CLOSENESS      ? &gproji_default_closeness_rule
+                                : own == GPROJI_OWN_DRAG_HANDLES ? &gproji_drag_handles_rule
+                                                                 : NULL;
+    if (!gproji_form_ready(form) || gproji_own_part(form, own)) return;
+    if (points) gproji_add_points(gproji_new_selected_part(form, points, gproji_select_all), NULL, 0);
+    if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
+    if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
+    if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
+    if (own == GPROJI_OWN_FORCES) gproji_add_force_guidance(form);
+    if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
+    if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
 }
 
 /* Lets steps be measured by their smoothness (see >>loop), or not. */
@@ -23851,22 +23807,6 @@ GPROJI_INTERNAL void gproji_settle_form(void *user, double *x) {
     }
 }
 
-/* The hooks that a form adds to its system's steps. */
-GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
-    const gproj_solve_options *options = &form->solve.loop.options;
-    gproji_hooks hooks;
-    memset(&hooks, 0, sizeof hooks);
-    hooks.user = form;
-    if (options->nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks.refuse = gproji_refuse_turned;
-    if (!options->smooth || options->nearest) return hooks;
-    if (gproji_is_on(form, form->planarity)) hooks.settle = gproji_settle_form;
-    if (!gproji_own_part(form, GPROJI_OWN_CORNERS)) return hooks;
-    hooks.inspect = gproji_inspect_corners;
-    hooks.wake = gproji_wake_corners;
-    hooks.refuse = gproji_refuse_corners;
-    return hooks;
-}
-
 /* -- a solve, at once or in frames -- */
 
 /* A result that says why a call is wrong and leaves the form as it is. */
@@ -23912,24 +23852,6 @@ failed:
     return false;
 }
 
-/* Adds to the verdict of a solve that has ended. */
-GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
-    static const char shrinks[] =
-        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
-    gproj_result *result = &form->solve.loop.result;
-    if (gproji_has_active_wish(form) && !gproji_is_held(form))
-        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
-    if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
-    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
-        gproji_tell_held(form, result);
-        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
-    }
-    gproji_tell_spoiled(form, result);
-    if (result->outcome != GPROJ_CONVERGED) return;
-    if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
-    if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
-}
-
 /* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has
    ended. */
 GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
@@ -23953,19 +23875,44 @@ GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     return true;
 }
 
-/* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
+/* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
-    gproji_solve *solve = &form->solve;
-    bool ended;
-    solve->loop.hooks = gproji_form_hooks(form);
-    ended = gproji_run(&solve->loop, seconds);
-    if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
-    if (ended) solve->on = false, solve->finished = true;
-    if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
-    if (gproji_ends_beyond(form)) return solve->loop.result;
+    static const char shrinks[] =
+        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
+    gproji_loop *loop = &form->solve.loop;
+    gproj_result *result = &loop->result;
+    gproji_hooks *hooks = &loop->hooks;
+    bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended;
+    /* 1. What the form adds to the system's steps. */
+    memset(hooks, 0, sizeof *hooks);
+    hooks->user = form;
+    if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
+    if (smooth && gproji_is_on(form, form->planarity)) hooks->settle = gproji_settle_form;
+    if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
+        hooks->inspect = gproji_inspect_corners;
+        hooks->wake = gproji_wake_corners;
+        hooks->refuse = gproji_refuse_corners;
+    }
+    /* 2. The steps. */
+    ended = gproji_run(loop, seconds);
+    if (ended) gproji_doubt_equilibrium(form, result);
+    if (ended) form->solve.on = false, form->solve.finished = true;
+    if (result->outcome == GPROJ_FAILED || gproji_ends_beyond(form)) return *result;
     gproji_store_positions(form, form->before);
-    if (ended) gproji_finish_solve(form);
-    return solve->loop.result;
+    if (!ended) return *result;
+    /* 3. The verdict, clause by clause. */
+    if (gproji_has_active_wish(form) && !gproji_is_held(form))
+        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
+    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
+        gproji_tell_held(form, result);
+        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
+    }
+    gproji_tell_spoiled(form, result);
+    if (result->outcome != GPROJ_CONVERGED) return *result;
+    if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
+    if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
+    return *result;
 }
 
 /* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth
@@ -24011,7 +23958,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
                                                  const gproj_solve_options *options) {
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
-    size_t count = (size_t)gproj_system_variable_count(s), positions = 3 * (size_t)form->mesh->vertex_count;
+    size_t count = (size_t)gproj_system_variable_count(s);
     double *start = (double *)gproji_take(&form->own, count, sizeof *start);
     double *end =
         (double *)gproji_take(&form->own, count, sizeof *end); /* of the best attempt, if it was not the last */
@@ -24036,7 +23983,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
         /* 2. Back to the start, forces included, and again. */
         if (here) memcpy(end, x, count * sizeof *end);
-        memcpy(form->mesh->position, form->before, positions * sizeof *form->before);
+        gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
         other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
@@ -24155,33 +24102,11 @@ enum {
 
 /* -- the state -- */
 
-/* Passes a solve in frames, if one is on. */
-GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
-    gproji_solve solve = form->solve;
-    gproji_passing passing;
-    if (!gproji_pass_bool(stream, &solve.on)) {
-        if (stream->mode == GPROJI_READ) form->solve.on = form->solve.finished = false;
-        return GPROJI_PASS_NONE;
-    }
-    passing = gproji_pass_loop(stream, form->system, &solve.loop);
-    if (stream->mode != GPROJI_READ) return passing;
-    if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
-    solve.structure = gproji_structure_of(form->system);
-    form->solve = solve;
-    return passing;
-}
-
-/* Passes a group, and what its rule keeps. */
-GPROJI_INTERNAL void gproji_pass_part(gproji_stream *stream, gproj_form *form, int32_t group, gproji_passing passing) {
-    gproji_part *part = gproji_part_of(form, group);
-    gproji_pass_group(stream, form->system, group, gproji_own_of(form, group) != GPROJI_OWN_NONE, passing);
-    if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
-}
-
-/* Passes the groups, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
+/* Passes the groups and what their rules keep, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
+    gproji_part *part;
     count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
     for (k = 0; k < count && !stream->wrong; ++k) {
         int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_own_of(form, k), group = -1;
@@ -24193,10 +24118,13 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             group = gproji_own_group(form, (gproji_own)kind);
             seen[kind] = true;
         }
-        if (group < 0 || group >= have)
+        if (group < 0 || group >= have) {
             gproji_spoil(stream, "a group is not one of the form");
-        else
-            gproji_pass_part(stream, form, group, passing);
+            break;
+        }
+        part = gproji_part_of(form, group);
+        gproji_pass_group(stream, form->system, group, kind != GPROJI_OWN_NONE, passing);
+        if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
@@ -24236,12 +24164,23 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
 
 /* Passes the state between head and checksum. */
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
-    gproji_passing passing;
+    gproji_passing passing = GPROJI_PASS_NONE;
+    gproji_solve solve = form->solve;
+    bool read = stream->mode == GPROJI_READ;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, gproj_system_values(form->system), (size_t)gproj_system_variable_count(form->system));
-    passing = gproji_pass_solve(stream, form);
+    /* A solve in frames, if one is on. */
+    if (gproji_pass_bool(stream, &solve.on))
+        passing = gproji_pass_loop(stream, form->system, &solve.loop);
+    else if (read)
+        form->solve.on = form->solve.finished = false;
+    if (read && solve.on) {
+        if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
+        solve.structure = gproji_structure_of(form->system);
+        form->solve = solve;
+    }
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
     if (form->statics) {
         gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
@@ -24458,26 +24397,6 @@ GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double 
     }
 }
 
-/* Finds the responses Q by (1). restore: `base` moves by a step that takes the residual off, too. False: the matrix
-   cannot be factored. */
-GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
-    size_t n = (size_t)drag->variables;
-    gproji_tangent how;
-    int64_t e;
-    int32_t j;
-    /* Column 3 k + c begins as the force of handle k along axis c. */
-    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
-    for (j = 0; j < drag->columns; ++j)
-        for (e = drag->handle.start[j / 3]; e < drag->handle.start[j / 3 + 1]; ++e)
-            drag->motion[n * (size_t)j + 3 * (size_t)drag->handle.vertex[e] + (size_t)(j % 3)] +=
-                drag->handle.weight[e];
-    how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light;
-    how.light_from = 3 * drag->form->mesh->vertex_count;
-    how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
-    drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
-    return gproji_project(drag->form->system, &how, drag->columns, drag->motion, restore ? drag->base : NULL);
-}
-
 /* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
 GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
     size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
@@ -24521,58 +24440,59 @@ GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
     drag->info.freedom = r;
 }
 
-/* pull = (L'L)^-1 L', the pseudo-inverse of L. */
-GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
-    int32_t rank = drag->info.freedom, m = drag->columns, i, j;
-    double *column = drag->work + (size_t)rank * (size_t)rank;
-    for (i = 0; i < rank; ++i)
-        for (j = 0; j <= i; ++j)
-            drag->work[(size_t)i * (size_t)rank + (size_t)j] =
-                gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
-    gproji_small_factor(drag->work, rank, rank, DBL_MIN);
-    for (j = 0; j < m; ++j) {
-        for (i = 0; i < rank; ++i) column[i] = drag->lift[(size_t)m * (size_t)i + (size_t)j];
-        gproji_small_solve(drag->work, rank, rank, column);
-        for (i = 0; i < rank; ++i) drag->pull[(size_t)m * (size_t)i + (size_t)j] = column[i];
+/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
+   After an error earlier responses are lost. */
+GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore, gproj_error *error) {
+    gproj_system *system = drag->form->system;
+    const gproji_handle_list *list = &drag->handle;
+    const double *x = gproj_system_values(system);
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, rank;
+    int32_t light_from = 3 * drag->form->mesh->vertex_count, halving, i, j;
+    double residual = gproji_see_hard(system, NULL), *column;
+    gproji_tangent how;
+    int64_t e;
+    if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
+    /* 1. The responses Q by (1): column 3 k + c begins as the force of handle k along axis c. */
+    memcpy(drag->base, x, n * sizeof *drag->base);
+    memset(drag->motion, 0, n * m * sizeof *drag->motion);
+    for (j = 0; j < drag->columns; ++j)
+        for (e = list->start[j / 3]; e < list->start[j / 3 + 1]; ++e)
+            drag->motion[n * (size_t)j + 3 * (size_t)list->vertex[e] + (size_t)(j % 3)] += list->weight[e];
+    how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light, how.light_from = light_from;
+    how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
+    drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
+    if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL)) {
+        if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "drag: what must hold cannot be linearised here: its numbers are too large or too different");
     }
-}
-
-/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x.
-   Where rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
-GPROJI_INTERNAL void gproji_shorten_restoration(gproj_drag *drag, double residual) {
-    const double *x = gproj_system_values(drag->form->system);
-    int32_t vertices = drag->form->mesh->vertex_count, halving, i;
-    for (halving = 0; halving <= GPROJI_DRAG_HALVINGS; ++halving) {
-        double restored, most = 0;
-        for (i = 0; i < vertices; ++i)
-            most = gproji_fmax(most, gproji_distance3(drag->base + 3 * (size_t)i, x + 3 * (size_t)i));
-        restored = gproji_see_hard(drag->form->system, drag->base);
-        if (restored < residual && most <= 1) return;
+    /* 2. The step from x to `base` is halved until no vertex moves by more than a mean edge and the residual is below
+       that at x: where rows nearly depend on each other the least step that satisfies them may be hundreds of edges
+       long. */
+    for (halving = 0; restore && halving <= GPROJI_DRAG_HALVINGS; ++halving) {
+        double most = 0;
+        for (i = 0; i < light_from; i += 3) most = gproji_fmax(most, gproji_distance3(drag->base + i, x + i));
+        if (gproji_see_hard(system, drag->base) < residual && most <= 1) break;
         for (i = 0; i < drag->variables; ++i)
             drag->base[i] = halving < GPROJI_DRAG_HALVINGS ? (drag->base[i] + x[i]) / 2 : x[i];
     }
-}
-
-/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
-   False: that could not be done, and earlier responses are lost. */
-GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
-    double residual = gproji_see_hard(drag->form->system, NULL);
-    if (!gproji_form_ready(drag->form)) return false;
-    memcpy(drag->base, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->base);
-    if (!gproji_find_responses(drag, restore)) return false;
-    if (restore) gproji_shorten_restoration(drag, residual);
     gproji_orthonormalise(drag);
-    gproji_invert_lift(drag);
+    /* 3. pull = (L'L)^-1 L', the pseudo-inverse of L. */
+    rank = (size_t)drag->info.freedom;
+    column = drag->work + rank * rank;
+    for (i = 0; i < drag->info.freedom; ++i)
+        for (j = 0; j <= i; ++j)
+            drag->work[(size_t)i * rank + (size_t)j] =
+                gproji_dot(drag->lift + m * (size_t)i, drag->lift + m * (size_t)j, m);
+    gproji_small_factor(drag->work, drag->info.freedom, drag->info.freedom, DBL_MIN);
+    for (j = 0; j < drag->columns; ++j) {
+        for (i = 0; i < drag->info.freedom; ++i) column[i] = drag->lift[m * (size_t)i + (size_t)j];
+        gproji_small_solve(drag->work, drag->info.freedom, drag->info.freedom, column);
+        for (i = 0; i < drag->info.freedom; ++i) drag->pull[m * (size_t)i + (size_t)j] = column[i];
+    }
     gproji_gather_handles(drag, drag->base, drag->held);
     drag->info.linearisations++;
-    return true;
-}
-
-/* Says why gproji_linearise_drag failed. */
-GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
-    if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
-    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                       "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+    return GPROJ_OK;
 }
 
 /* -- moves -- */
@@ -24639,11 +24559,10 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     gproji_follow_handles(drag);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
     if (bound > 0 && !(gproji_see_hard(drag->form->system, NULL) <= bound)) {
-        if (!gproji_linearise_drag(drag, true)) {
+        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) {
             /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
-            gproji_fail_linearising(drag, &drag->error);
             memcpy(gproj_system_values(drag->form->system), drag->last, (size_t)drag->variables * sizeof *drag->last);
-            if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+            if (gproji_linearise_drag(drag, false, NULL) != GPROJ_OK) drag->info.freedom = 0;
             drag->info.behind = behind;
             return drag->error.code;
         }
@@ -24753,7 +24672,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     drag->structure = gproji_structure_of(s);
     if (!gproji_form_ready(form) || !gproji_begin_tangent(s, GPROJI_DRAG_SIDES))
         return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
-    return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
+    return gproji_linearise_drag(drag, false, error);
 }
 
 /* Refuses a drag beside a solve or another drag, forces without values, bad options, handles that are none. */
@@ -24828,11 +24747,6 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
-/* Puts the mesh back to its positions before the drag. */
-GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
-    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
-}
-
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     gproj_form *form;
     if (!drag) return;
@@ -24865,21 +24779,30 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
-/* Gives the groups of the release their rows: fairness as before the drag, handles at x, all else where it was. */
-GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
-    const gproj_form *form = drag->form;
-    gproj_system *s = form->system;
-    int32_t soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    int32_t group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), r, k, c;
-    const gproji_group *fairness = gproji_group_at(s, soft), *at = gproji_group_at(s, group);
-    const double *x = gproj_system_values(s);
+GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
+    gproj_form *form;
+    gproj_system *s;
+    const gproji_group *fairness, *at;
+    const double *x;
+    int32_t soft, group, r, k, c;
     int64_t e;
-    /* 1. Fairness as at the beginning. */
+    if (!drag || drag->released) return false;
+    form = drag->form;
+    s = form->system;
+    drag->released = true;
+    gproji_reset_mesh(form);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    if (!gproji_form_ready(form)) return false;
+    soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
+    x = gproj_system_values(s);
+    /* 1. The rows of the groups: fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
         gproj_system_set_row(s, soft, r, NULL, 0);
         gproj_system_set_row(s, soft, r, NULL, -gproji_row_value(fairness, r, drag->first));
     }
-    /* 2. All vertices stay, with a little weight; */
+    /* All vertices stay, with a little weight; */
     for (r = 0; r < at->row_count; ++r) {
         gproj_system_set_row(s, group, r, NULL, -drag->first[r]);
         gproj_system_set_row_weight(s, group, r, gproji_drag_rest);
@@ -24897,20 +24820,8 @@ GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-}
-
-GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
-    gproj_form *form;
-    if (!drag || drag->released) return false;
-    form = drag->form;
-    drag->released = true;
-    gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (!gproji_form_ready(form)) return false;
-    gproji_set_release(drag);
     gproji_schedule_release(drag, true);
-    /* A solve is refused during a drag, but for this one. */
+    /* 2. A solve is refused during a drag, but for this one. */
     form->drag = NULL;
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
     form->drag = drag;
