@@ -19406,14 +19406,22 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
 /* Smaller units of length have coordinates with few digits, if they have a finite reciprocal at all. */
 static const double gproji_least_edge = 1e-305;
 
-/* Gives a new form its arrays, units, originals and the system with the vertices. */
-GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
-    gproj_mesh *mesh = form->mesh;
+GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
+    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
     int32_t i, k, first, ring = 1;
     double edge;
-    if (!mesh)
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "there is no mesh: reading or building it failed, see its error");
+    if (!form) return NULL;
+    gproji_error_clear(&form->error);
+    if (host) form->host = *host;
+    form->mesh = mesh;
+    form->scale = 1;
+    form->planarity = -1;
+    if (!mesh) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "there is no mesh: reading or building it failed, see its error");
+        return form;
+    }
+    /* 1. Arrays, and the system. */
     for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
     for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
     form->work.ring_size = ring;
@@ -19424,10 +19432,10 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
     form->system = gproj_system_create(&form->host);
     if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
-        return gproji_fail_memory(&form->error);
-    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code;
-    /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
-       digits of all coordinates. */
+        gproji_fail_memory(&form->error);
+    if (form->error.code || !gproji_positions_are_finite(form, &form->error)) return form;
+    /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
+       the digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
     for (k = 0; k < 3; ++k) {
         double low = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0, high = low;
@@ -19438,28 +19446,18 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
         }
         form->centre[k] = low + (high - low) / 2;
     }
+    /* 3. The unit, and the vertices in it. */
     edge = gproj_mesh_mean_edge_length(mesh);
     if (edge > 0 && edge < gproji_least_edge)
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "the mean edge length is %g, below 1e-305; use a smaller unit of length", edge);
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                    "the mean edge length is %g, below 1e-305; use a smaller unit of length", edge);
+    if (form->error.code) return form;
     form->scale = edge > 0 ? 1 / edge : 1;
-    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code; /* in these units, too */
+    if (!gproji_positions_are_finite(form, &form->error)) return form;
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
     gproj_system_add_variables(form->system, 3 * mesh->vertex_count, 3, form->original);
-    return GPROJ_OK;
-}
-
-GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
-    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
-    if (!form) return NULL;
-    gproji_error_clear(&form->error);
-    if (host) form->host = *host;
-    form->mesh = mesh;
-    form->scale = 1;
-    form->planarity = -1;
-    gproji_form_begin(form);
     return form;
 }
 
@@ -20295,40 +20293,39 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_add_fairness(form, &gproji_fairness_rule, weight);
 }
 
-/* Fills in rows `row` and `row` + 1, u'd and w'd for a difference d: u, w span the plane orthogonal to `normal`. */
-GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
-                                               const double normal[3]) {
-    double basis[2][3];
-    int32_t i, k, c;
-    gproji_tangents3(normal, basis[0], basis[1]);
-    for (k = 0; k < 2; ++k) {
-        int32_t terms;
-        gproj_term *term = gproji_row_terms(system, group, row + k, &terms);
-        int32_t count = terms / 3 - 1; /* neighbours */
-        for (i = 0; i <= count; ++i)
-            for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[k][c] * (i == 0 ? 1.0 : -1.0 / count);
-    }
-}
-
-/* Fills in the rows with tangents at the present normals of the vertices. part->vertex: the vertex of each difference,
-   which has two rows. */
-GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group,
-                                               const gproj_progress *progress) {
+/* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
+   vertex or face, which is in part->vertex. */
+GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
+                                                const gproj_progress *progress) {
+    static const double up[3] = {0, 0, 1};
     const gproji_part *part = (const gproji_part *)user;
-    double normal[3] = {0, 0, 1};
-    int32_t i;
+    const double *x = gproj_system_values(system);
+    bool faces = part->rule->place == GPROJ_PLACE_FACE;
+    double normal[3] = {0, 0, 1}, basis[2][3];
+    int32_t r, i, c, terms;
     (void)progress;
-    gproji_update_areas(part->form);
-    for (i = 0; i < part->count; ++i) {
-        /* The differences at one vertex follow each other. */
-        if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
-        gproji_refresh_difference(system, group, 2 * i, normal);
+    if (!faces) gproji_update_areas(part->form);
+    for (r = 0; r < 2 * part->count; ++r) {
+        gproj_term *term = gproji_row_terms(system, group, r, &terms);
+        int32_t neighbours = terms / 3 - 1, element = part->vertex[r / 2];
+        /* The differences at one element follow each other. */
+        if (r == 0 || element != part->vertex[(r - 1) / 2]) {
+            if (faces) {
+                gproji_copy3(x + part->form->normal[element], normal);
+                gproji_normalise3(normal, up);
+            } else {
+                gproji_vertex_normal(part->form, element, normal);
+            }
+            gproji_tangents3(normal, basis[0], basis[1]);
+        }
+        for (i = 0; i <= neighbours; ++i)
+            for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[r % 2][c] * (i == 0 ? 1.0 : -1.0 / neighbours);
     }
 }
 
-static const gproji_acts gproji_tangential_acts = {gproji_refresh_tangential, NULL, NULL, NULL};
+static const gproji_acts gproji_difference_acts = {gproji_refresh_differences, NULL, NULL, NULL};
 static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_tangential_acts};
+                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_difference_acts};
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
@@ -20346,20 +20343,6 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
     }
     gproji_give_terms(form, term);
     return gproji_built(form, part->group);
-}
-
-GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group,
-                                          const gproj_progress *progress) {
-    static const double up[3] = {0, 0, 1};
-    const gproji_part *part = (const gproji_part *)user;
-    int32_t i;
-    (void)progress;
-    for (i = 0; i < part->count; ++i) {
-        double normal[3];
-        gproji_copy3(gproj_system_values(system) + part->form->normal[part->vertex[i]], normal);
-        gproji_normalise3(normal, up);
-        gproji_refresh_difference(system, group, 2 * i, normal);
-    }
 }
 
 /* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
@@ -20386,9 +20369,8 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     return gproji_form_ready(form);
 }
 
-static const gproji_acts gproji_gauss_acts = {gproji_refresh_gauss, NULL, NULL, NULL};
 static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_gauss_acts};
+                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_difference_acts};
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -20745,46 +20727,43 @@ GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int
     return gproji_add_set(form, &gproji_collinear_rule, 2, count, vertices, weight);
 }
 
-/* Adds a boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
-GPROJI_INTERNAL void gproji_add_loop_sets(gproji_part *part, int32_t loop) {
-    gproj_form *form = part->form;
-    const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
-    do {
-        if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
-        h = mesh->next[h];
-    } while (h != mesh->loop_halfedge[loop]);
-    h = start; /* the half-edge that leaves a corner, if there is one */
-    if (((const gproji_planes *)part->data)->planes == 2 && corners < 3) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
-                    "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
-                    "between them",
-                    mesh->origin[h], corners);
-        return;
-    }
-    do {
-        part->vertex[part->count++] = mesh->origin[h];
-        h = mesh->next[h];
-        if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
-            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
-            gproji_add_plane_set(part, from);
-            from = part->count;
-        }
-    } while (h != start);
-    if (corners == 0) gproji_add_plane_set(part, from);
-}
-
+/* Each boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
 GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_rule *rule, int32_t planes,
                                                  double weight) {
+    const gproj_mesh *mesh;
     gproji_part *part;
     int32_t v, most = 0, loop;
     if (!gproji_form_ready(form)) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v) /* corners are in two sets */
+    mesh = form->mesh;
+    for (v = 0; v < mesh->vertex_count; ++v) /* corners are in two sets */
         most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
     part = gproji_new_part(form, rule, most);
     if (!gproji_begin_planes(part, planes, weight)) return -1;
     part->count = 0;
-    for (loop = 0; loop < form->mesh->loop_count && gproji_form_ready(form); ++loop) gproji_add_loop_sets(part, loop);
+    for (loop = 0; loop < mesh->loop_count && gproji_form_ready(form); ++loop) {
+        int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
+        do {
+            if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[loop]);
+        h = start; /* the half-edge that leaves a corner, if there is one */
+        if (planes == 2 && corners < 3) {
+            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
+                        "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
+                        "between them",
+                        mesh->origin[h], corners);
+            return -1;
+        }
+        do {
+            part->vertex[part->count++] = mesh->origin[h];
+            h = mesh->next[h];
+            if (corners == 0 || !gproj_form_is_corner(form, mesh->origin[h])) continue;
+            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
+            gproji_add_plane_set(part, from);
+            from = part->count;
+        } while (h != start);
+        if (corners == 0) gproji_add_plane_set(part, from);
+    }
     return gproji_built(form, part->group);
 }
 
@@ -22393,12 +22372,23 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     return true;
 }
 
-/* Adds an edge's forces, with density w, to the sums in both ends. */
-GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, int32_t edge, double w, double *out) {
-    size_t i = 3 * (size_t)mesh->origin[2 * edge], j = 3 * (size_t)mesh->origin[2 * edge + 1], c;
-    for (c = 0; c < 3; ++c) {
-        out[i + c] += w * (x[i + c] - x[j + c]);
-        out[j + c] -= w * (x[i + c] - x[j + c]);
+/* The density of an edge's force in the caller's units; 0 without forces. */
+GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
+    const gproji_statics *s = form->statics;
+    if (!s || s->force[edge] < 0) return 0;
+    return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
+}
+
+/* out += the sum of forces in each vertex at x. density: per edge; NULL: those of the form, in the caller's units. */
+GPROJI_INTERNAL void gproji_add_forces(const gproj_form *form, const double *x, const double *density, double *out) {
+    int32_t e;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        size_t i = 3 * (size_t)form->mesh->origin[2 * e], j = 3 * (size_t)form->mesh->origin[2 * e + 1], c;
+        double w = density ? density[e] : gproji_force_density(form, e);
+        for (c = 0; c < 3; ++c) {
+            out[i + c] += w * (x[i + c] - x[j + c]);
+            out[j + c] -= w * (x[i + c] - x[j + c]);
+        }
     }
 }
 
@@ -22406,9 +22396,9 @@ GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, i
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t v, e, c;
+    int32_t v, c;
     for (c = 0; c < 3 * mesh->vertex_count; ++c) out[c] = load[c];
-    for (e = 0; force && e < mesh->edge_count; ++e) gproji_add_force(mesh, x, e, force[e], out);
+    if (force) gproji_add_forces(form, x, force, out);
     for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
             if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
@@ -22598,13 +22588,6 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
 
 /* -- forces for the caller -- */
 
-/* Densities in the caller's units. */
-GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
-    const gproji_statics *s = form->statics;
-    if (!s || s->force[edge] < 0) return 0;
-    return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
-}
-
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
     gproj_code code = gproji_begin_question(form, "get forces", densities != NULL, error);
     int32_t e;
@@ -22671,18 +22654,11 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     return GPROJ_OK;
 }
 
-/* out += the sum of forces in each vertex, at the mesh's positions. */
-GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
-    int32_t e;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        gproji_add_force(form->mesh, form->mesh->position, e, gproji_force_density(form, e), out);
-}
-
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c;
     gproj_code code = gproj_get_loads(form, reactions, error);
     if (code) return code;
-    gproji_add_force_sums(form, reactions);
+    gproji_add_forces(form, form->mesh->position, NULL, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         bool idle = form->mesh->vertex_halfedge[v] < 0;
         for (c = 0; c < 3; ++c) {
@@ -22725,7 +22701,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];
     }
-    gproji_add_force_sums(form, sum);
+    gproji_add_forces(form, mesh->position, NULL, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         double left[3], given[3];
         if (mesh->vertex_halfedge[v] < 0) continue;
@@ -22957,38 +22933,36 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
-/* Returns which part of an area the row of a corner asks for, and gives the terms their coefficients. */
-GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t corner,
+/* Gives the terms of an item their coefficients, in the order of gproji_add_corner. Returns which part of the area, or
+   of the squared length, the row asks for. */
+GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t item,
                                                gproj_term *term) {
     const gproji_corners *guard = gproji_corners_of(part);
-    int32_t h = corner / 2, face = part->form->mesh->face[h], k, t;
-    bool upright = corner % 2 != 0;
+    const gproj_mesh *mesh = part->form->mesh;
+    int32_t edge = item - guard->edges, h = item / 2, k, t;
+    bool upright = item % 2 != 0;
     double m[3], area[3], has;
-    gproji_corner_normal(part->form, x, x, face, m);
-    if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
-    gproji_corner_area(part->form->mesh, x, h, area);
+    if (edge >= 0) {
+        double length = guard->length[edge], asked;
+        for (k = 0; k < 3; ++k) {
+            term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
+            term[3 * k + 2].a = -2 / (length * length);
+        }
+        asked = gproji_fmin(gproji_edge_length(mesh, x, edge) / length, gproji_corner_wanted);
+        asked = gproji_fmax(asked, gproji_edge_floor);
+        return asked * asked;
+    }
+    gproji_corner_normal(part->form, x, x, mesh->face[h], m);
+    if (upright) gproji_copy3(guard->axis + 3 * (size_t)mesh->face[h], m);
+    gproji_corner_area(mesh, x, h, area);
     has = gproji_dot3(area, m) / guard->size[h];
-    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_add_corner */
-    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6)
+    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6) /* the six products of (a x b)'m for each pair a b of the corner */
         for (k = 0; k < 3; ++k) {
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
         }
     return upright ? gproji_fmax(gproji_fmin(has, gproji_corner_upright), gproji_corner_upright_floor)
                    : gproji_fmax(gproji_fmin(has, gproji_corner_wanted), gproji_corner_floor);
-}
-
-/* Likewise for an edge: which part of the squared length. */
-GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const double *x, int32_t edge, gproj_term *term) {
-    double length = gproji_corners_of(part)->length[edge], asked;
-    int32_t k;
-    for (k = 0; k < 3; ++k) { /* in the order of gproji_set_length_terms */
-        term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
-        term[3 * k + 2].a = -2 / (length * length);
-    }
-    asked = gproji_fmin(gproji_edge_length(part->form->mesh, x, edge) / length, gproji_corner_wanted);
-    asked = gproji_fmax(asked, gproji_edge_floor);
-    return asked * asked;
 }
 
 /* Linearises the rows that act, with the normals at x. */
@@ -23002,12 +22976,8 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     (void)progress;
     for (r = 0; r < g->row_count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
-        int32_t item = guard->item[r];
-        double asked;
         if (!(g->row[r].weight > 0)) continue;
-        asked = item < guard->edges ? gproji_linearise_corner(part, x, item, term)
-                                    : gproji_linearise_edge(part, x, item - guard->edges, term);
-        gproji_place_row(system, group, r, g->row[r].weight, -asked);
+        gproji_place_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, guard->item[r], term));
     }
 }
 
@@ -23501,31 +23471,26 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     }
 }
 
-/* Does a row hold vertices in space: linear in them and changed by a translation, or quadratic in them, as lengths and
-   areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
-    int32_t vertices = 3 * form->mesh->vertex_count;
-    double sum[3] = {0, 0, 0};
-    int64_t t;
-    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
-        if (i >= vertices) continue;
-        if (j >= 0 && j < vertices) return true;
-        if (j < 0) sum[i % 3] += g->term[t].a;
-    }
-    return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
-}
-
-/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
+/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? A bound holds
+   it if a mesh that has shrunk to the origin violates it. Other rows do that are linear in vertices and changed by a
+   translation, or quadratic in them, as lengths and areas are: not differences of vertices, nor products with normals. */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t i, r;
+    int32_t vertices = 3 * form->mesh->vertex_count, i, r;
+    int64_t t;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         for (r = 0; g->role < GPROJI_GUARD && g->schedule.weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
+            bool bound = g->kind == GPROJ_BOUND, held = bound ? row->constant < 0 : g->global;
+            double sum[3] = {0, 0, 0};
             if (!(row->weight > 0)) continue;
-            /* A bound holds the mesh if a mesh that has shrunk to the origin violates it. */
-            if (g->kind == GPROJ_BOUND ? row->constant < 0 : g->global || gproji_row_holds(form, g, row)) return true;
+            for (t = 0; t < (int64_t)row->terms && !bound && !held; ++t) {
+                const gproj_term *term = g->term + row->term + t;
+                int32_t v = gproji_variable_of(g, row, term->i), w = gproji_variable_of(g, row, term->j);
+                held = v < vertices && w >= 0 && w < vertices;
+                if (v < vertices && w < 0) sum[v % 3] += term->a;
+            }
+            if (held || fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9) return true;
         }
     }
     return false;
@@ -23741,19 +23706,6 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
 }
 
-/* Lets steps be measured by their smoothness (see >>loop), or not. */
-GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
-    bool forces = form->statics && gproji_is_on(form, form->statics->group);
-    const gproji_part *smooth, *brake;
-    if (wanted) gproji_add_own_group(form, GPROJI_OWN_METRIC);
-    if (wanted && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
-    if (!gproji_form_ready(form)) return;
-    smooth = gproji_own_part(form, GPROJI_OWN_METRIC), brake = gproji_own_part(form, GPROJI_OWN_BRAKE);
-    if (smooth) gproj_system_set_schedule(form->system, smooth->group, gproj_keep(wanted ? gproji_metric_smooth : 0));
-    if (brake)
-        gproj_system_set_schedule(form->system, brake->group, gproj_keep(wanted && forces ? gproji_metric_force : 0));
-}
-
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
@@ -23822,6 +23774,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric;
+    const gproji_part *part;
     int32_t guided;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23835,7 +23789,16 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || smooth, nearest);
-    gproji_set_metric(form, smooth && !options->skip_closeness);
+    /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
+    metric = smooth && !options->skip_closeness;
+    if (metric) gproji_add_own_group(form, GPROJI_OWN_METRIC);
+    if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
+    if (!gproji_form_ready(form)) goto failed;
+    part = gproji_own_part(form, GPROJI_OWN_METRIC);
+    if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
+    part = gproji_own_part(form, GPROJI_OWN_BRAKE);
+    if (part)
+        gproj_system_set_schedule(form->system, part->group, gproj_keep(metric && forces ? gproji_metric_force : 0));
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
     gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
@@ -23844,8 +23807,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     solve->loop.wish_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
-    if (form->statics && gproji_is_on(form, form->statics->group))
-        solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
+    if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
@@ -24464,7 +24426,8 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL)) {
         if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+                           "drag: what must hold cannot be linearised here: its numbers are too large or too "
+                           "different");
     }
     /* 2. The step from x to `base` is halved until no vertex moves by more than a mean edge and the residual is below
        that at x: where rows nearly depend on each other the least step that satisfies them may be hundreds of edges
