@@ -21385,7 +21385,8 @@ static const gproji_rule gproji_cost_rule = {"cost",          GPROJ_CONSTRAINT, 
 static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND,  GPROJ_PLACE_NONE,
                                                     GPROJI_OWN_NONE, GPROJI_DENSE, &gproji_total_acts};
 
-/* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
+/* Adds rows for a cost or total area, with prices and bounds in the caller's units. A constraint prescribes `min`, which
+   must be > 0 and finite; `max` is infinite then. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
     gproji_part *part = gproji_new_total(form, rule);
@@ -21393,6 +21394,10 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     gproji_total *total;
     int32_t rows;
     if (!part) return -1;
+    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min))) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, min);
+        return -1;
+    }
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "%s: the prices %g and %g must be >= 0 and not both 0", rule->name, length_price, area_price);
@@ -21408,19 +21413,8 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     return gproji_add_global_rows(part, weight, rows);
 }
 
-/* Prescribes a value > 0: infinities, which bounds may be, are refused. */
-GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const gproji_rule *rule, double length_price,
-                                                    double area_price, double value, double weight) {
-    if (!gproji_form_ready(form)) return -1;
-    if (!(value > 0) || !gproji_is_finite(value)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, value);
-        return -1;
-    }
-    return gproji_add_total(form, rule, length_price, area_price, value, HUGE_VAL, weight);
-}
-
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
-    return gproji_add_prescribed_total(form, &gproji_total_area_rule, 0, 1, area, weight);
+    return gproji_add_total(form, &gproji_total_area_rule, 0, 1, area, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
@@ -21428,7 +21422,7 @@ GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, doub
 }
 
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
-    return gproji_add_prescribed_total(form, &gproji_cost_rule, length_price, area_price, cost, weight);
+    return gproji_add_total(form, &gproji_cost_rule, length_price, area_price, cost, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
@@ -23472,8 +23466,9 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
 }
 
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? A bound holds
-   it if a mesh that has shrunk to the origin violates it. Other rows do that are linear in vertices and changed by a
-   translation, or quadratic in them, as lengths and areas are: not differences of vertices, nor products with normals. */
+   it if a mesh that has shrunk to the origin violates it. Other rows do if they are linear in vertices and changed by a
+   translation, or quadratic in them, as lengths and areas are. Differences of vertices, and products with normals, do
+   not. */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
     int32_t vertices = 3 * form->mesh->vertex_count, i, r;
     int64_t t;
@@ -24064,7 +24059,8 @@ enum {
 
 /* -- the state -- */
 
-/* Passes the groups and what their rules keep, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
+/* Passes the groups and what their rules keep, each behind a byte for whom it belongs to; groups that do not come in
+   lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
