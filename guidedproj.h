@@ -21385,8 +21385,8 @@ static const gproji_rule gproji_cost_rule = {"cost",          GPROJ_CONSTRAINT, 
 static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND,  GPROJ_PLACE_NONE,
                                                     GPROJI_OWN_NONE, GPROJI_DENSE, &gproji_total_acts};
 
-/* Adds rows for a cost or total area, with prices and bounds in the caller's units. A constraint prescribes `min`, which
-   must be > 0 and finite; `max` is infinite then. */
+/* Adds rows for a cost or total area, with prices and bounds in the caller's units. A constraint prescribes `min`,
+   which must be > 0 and finite; `max` is infinite then. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
     gproji_part *part = gproji_new_total(form, rule);
