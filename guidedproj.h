@@ -19260,14 +19260,22 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
 /* Smaller units of length have coordinates with few digits, if they have a finite reciprocal at all. */
 static const double gproji_least_edge = 1e-305;
 
-/* Gives a new form its arrays, units, originals and the system with the vertices. */
-GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
-    gproj_mesh *mesh = form->mesh;
+GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
+    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
     int32_t i, k, first, ring = 1;
     double edge;
-    if (!mesh)
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "there is no mesh: reading or building it failed, see its error");
+    if (!form) return NULL;
+    gproji_error_clear(&form->error);
+    if (host) form->host = *host;
+    form->mesh = mesh;
+    form->scale = 1;
+    form->planarity = -1;
+    if (!mesh) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "there is no mesh: reading or building it failed, see its error");
+        return form;
+    }
+    /* 1. Arrays, and the system. */
     for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
     for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
     form->work.ring_size = ring;
@@ -19278,10 +19286,10 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
     form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
     form->system = gproj_system_create(&form->host);
     if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
-        return gproji_fail_memory(&form->error);
-    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code;
-    /* The bounding box's centre. Vertices without edges count only if there are no others: one far away would take the
-       digits of all coordinates. */
+        gproji_fail_memory(&form->error);
+    if (form->error.code || !gproji_positions_are_finite(form, &form->error)) return form;
+    /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
+       the digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
     for (k = 0; k < 3; ++k) {
         double low = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0, high = low;
@@ -19292,28 +19300,18 @@ GPROJI_INTERNAL gproj_code gproji_form_begin(gproj_form *form) {
         }
         form->centre[k] = low + (high - low) / 2;
     }
+    /* 3. The unit, and the vertices in it. */
     edge = gproj_mesh_mean_edge_length(mesh);
     if (edge > 0 && edge < gproji_least_edge)
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "the mean edge length is %g, below 1e-305; use a smaller unit of length", edge);
+        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                    "the mean edge length is %g, below 1e-305; use a smaller unit of length", edge);
+    if (form->error.code) return form;
     form->scale = edge > 0 ? 1 / edge : 1;
-    if (!gproji_positions_are_finite(form, &form->error)) return form->error.code; /* in these units, too */
+    if (!gproji_positions_are_finite(form, &form->error)) return form;
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
     for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
     gproj_system_add_variables(form->system, 3 * mesh->vertex_count, 3, form->original);
-    return GPROJ_OK;
-}
-
-GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
-    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
-    if (!form) return NULL;
-    gproji_error_clear(&form->error);
-    if (host) form->host = *host;
-    form->mesh = mesh;
-    form->scale = 1;
-    form->planarity = -1;
-    gproji_form_begin(form);
     return form;
 }
 
@@ -19640,11 +19638,6 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
 
 GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
     return gproji_add_points(gproji_new_selected_part(form, &gproji_closeness_rule, gproji_select_all), NULL, weight);
-}
-
-/* The library's own guidance. */
-GPROJI_INTERNAL void gproji_add_default_closeness(gproj_form *form) {
-    gproji_add_points(gproji_new_selected_part(form, &gproji_default_closeness_rule, gproji_select_all), NULL, 0);
 }
 
 /* -- planar faces -- */
@@ -20154,40 +20147,39 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_add_fairness(form, &gproji_fairness_rule, weight);
 }
 
-/* Fills in rows `row` and `row` + 1, u'd and w'd for a difference d: u, w span the plane orthogonal to `normal`. */
-GPROJI_INTERNAL void gproji_refresh_difference(gproj_system *system, int32_t group, int32_t row,
-                                               const double normal[3]) {
-    double basis[2][3];
-    int32_t i, k, c;
-    gproji_tangents3(normal, basis[0], basis[1]);
-    for (k = 0; k < 2; ++k) {
-        int32_t terms;
-        gproj_term *term = gproji_row_terms(system, group, row + k, &terms);
-        int32_t count = terms / 3 - 1; /* neighbours */
-        for (i = 0; i <= count; ++i)
-            for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[k][c] * (i == 0 ? 1.0 : -1.0 / count);
-    }
-}
-
-/* Fills in the rows with tangents at the present normals of the vertices. part->vertex: the vertex of each difference,
-   which has two rows. */
-GPROJI_INTERNAL void gproji_refresh_tangential(void *user, gproj_system *system, int32_t group,
-                                               const gproj_progress *progress) {
+/* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
+   vertex or face, which is in part->vertex. */
+GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
+                                                const gproj_progress *progress) {
+    static const double up[3] = {0, 0, 1};
     const gproji_part *part = (const gproji_part *)user;
-    double normal[3] = {0, 0, 1};
-    int32_t i;
+    const double *x = gproj_system_values(system);
+    bool faces = part->rule->place == GPROJ_PLACE_FACE;
+    double normal[3] = {0, 0, 1}, basis[2][3];
+    int32_t r, i, c, terms;
     (void)progress;
-    gproji_update_areas(part->form);
-    for (i = 0; i < part->count; ++i) {
-        /* The differences at one vertex follow each other. */
-        if (i == 0 || part->vertex[i] != part->vertex[i - 1]) gproji_vertex_normal(part->form, part->vertex[i], normal);
-        gproji_refresh_difference(system, group, 2 * i, normal);
+    if (!faces) gproji_update_areas(part->form);
+    for (r = 0; r < 2 * part->count; ++r) {
+        gproj_term *term = gproji_row_terms(system, group, r, &terms);
+        int32_t neighbours = terms / 3 - 1, element = part->vertex[r / 2];
+        /* The differences at one element follow each other. */
+        if (r == 0 || element != part->vertex[(r - 1) / 2]) {
+            if (faces) {
+                gproji_copy3(x + part->form->normal[element], normal);
+                gproji_normalise3(normal, up);
+            } else {
+                gproji_vertex_normal(part->form, element, normal);
+            }
+            gproji_tangents3(normal, basis[0], basis[1]);
+        }
+        for (i = 0; i <= neighbours; ++i)
+            for (c = 0; c < 3; ++c) term[3 * i + c].a = basis[r % 2][c] * (i == 0 ? 1.0 : -1.0 / neighbours);
     }
 }
 
-static const gproji_acts gproji_tangential_acts = {gproji_refresh_tangential, NULL, NULL, NULL};
+static const gproji_acts gproji_difference_acts = {gproji_refresh_differences, NULL, NULL, NULL};
 static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_tangential_acts};
+                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_difference_acts};
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
@@ -20205,20 +20197,6 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
     }
     gproji_give_terms(form, term);
     return gproji_built(form, part->group);
-}
-
-GPROJI_INTERNAL void gproji_refresh_gauss(void *user, gproj_system *system, int32_t group,
-                                          const gproj_progress *progress) {
-    static const double up[3] = {0, 0, 1};
-    const gproji_part *part = (const gproji_part *)user;
-    int32_t i;
-    (void)progress;
-    for (i = 0; i < part->count; ++i) {
-        double normal[3];
-        gproji_copy3(gproj_system_values(system) + part->form->normal[part->vertex[i]], normal);
-        gproji_normalise3(normal, up);
-        gproji_refresh_difference(system, group, 2 * i, normal);
-    }
 }
 
 /* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
@@ -20245,9 +20223,8 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     return gproji_form_ready(form);
 }
 
-static const gproji_acts gproji_gauss_acts = {gproji_refresh_gauss, NULL, NULL, NULL};
 static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_gauss_acts};
+                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_difference_acts};
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -20604,46 +20581,43 @@ GPROJ_API int32_t gproj_add_collinear(gproj_form *form, int32_t count, const int
     return gproji_add_set(form, &gproji_collinear_rule, 2, count, vertices, weight);
 }
 
-/* Adds a boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
-GPROJI_INTERNAL void gproji_add_loop_sets(gproji_part *part, int32_t loop) {
-    gproj_form *form = part->form;
-    const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
-    do {
-        if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
-        h = mesh->next[h];
-    } while (h != mesh->loop_halfedge[loop]);
-    h = start; /* the half-edge that leaves a corner, if there is one */
-    if (((const gproji_planes *)part->data)->planes == 2 && corners < 3) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
-                    "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
-                    "between them",
-                    mesh->origin[h], corners);
-        return;
-    }
-    do {
-        part->vertex[part->count++] = mesh->origin[h];
-        h = mesh->next[h];
-        if (corners > 0 && gproj_form_is_corner(form, mesh->origin[h])) {
-            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
-            gproji_add_plane_set(part, from);
-            from = part->count;
-        }
-    } while (h != start);
-    if (corners == 0) gproji_add_plane_set(part, from);
-}
-
+/* Each boundary loop's sets: from corner to corner, or the whole loop if it has no corners. */
 GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_rule *rule, int32_t planes,
                                                  double weight) {
+    const gproj_mesh *mesh;
     gproji_part *part;
     int32_t v, most = 0, loop;
     if (!gproji_form_ready(form)) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v) /* corners are in two sets */
+    mesh = form->mesh;
+    for (v = 0; v < mesh->vertex_count; ++v) /* corners are in two sets */
         most += gproji_select_boundary(form, v) + gproj_form_is_corner(form, v);
     part = gproji_new_part(form, rule, most);
     if (!gproji_begin_planes(part, planes, weight)) return -1;
     part->count = 0;
-    for (loop = 0; loop < form->mesh->loop_count && gproji_form_ready(form); ++loop) gproji_add_loop_sets(part, loop);
+    for (loop = 0; loop < mesh->loop_count && gproji_form_ready(form); ++loop) {
+        int32_t start = mesh->loop_halfedge[loop], h = start, corners = 0, from = part->count;
+        do {
+            if (gproj_form_is_corner(form, mesh->origin[h])) start = h, ++corners;
+            h = mesh->next[h];
+        } while (h != mesh->loop_halfedge[loop]);
+        h = start; /* the half-edge that leaves a corner, if there is one */
+        if (planes == 2 && corners < 3) {
+            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
+                        "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
+                        "between them",
+                        mesh->origin[h], corners);
+            return -1;
+        }
+        do {
+            part->vertex[part->count++] = mesh->origin[h];
+            h = mesh->next[h];
+            if (corners == 0 || !gproj_form_is_corner(form, mesh->origin[h])) continue;
+            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
+            gproji_add_plane_set(part, from);
+            from = part->count;
+        } while (h != start);
+        if (corners == 0) gproji_add_plane_set(part, from);
+    }
     return gproji_built(form, part->group);
 }
 
@@ -21265,7 +21239,8 @@ static const gproji_rule gproji_cost_rule = {"cost",          GPROJ_CONSTRAINT, 
 static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND,  GPROJ_PLACE_NONE,
                                                     GPROJI_OWN_NONE, GPROJI_DENSE, &gproji_total_acts};
 
-/* Adds rows for a cost or total area, with prices and bounds in the caller's units. */
+/* Adds rows for a cost or total area, with prices and bounds in the caller's units. A constraint prescribes `min`,
+   which must be > 0 and finite; `max` is infinite then. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
     gproji_part *part = gproji_new_total(form, rule);
@@ -21273,6 +21248,10 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     gproji_total *total;
     int32_t rows;
     if (!part) return -1;
+    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min))) {
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, min);
+        return -1;
+    }
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                     "%s: the prices %g and %g must be >= 0 and not both 0", rule->name, length_price, area_price);
@@ -21288,19 +21267,8 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     return gproji_add_global_rows(part, weight, rows);
 }
 
-/* Prescribes a value > 0: infinities, which bounds may be, are refused. */
-GPROJI_INTERNAL int32_t gproji_add_prescribed_total(gproj_form *form, const gproji_rule *rule, double length_price,
-                                                    double area_price, double value, double weight) {
-    if (!gproji_form_ready(form)) return -1;
-    if (!(value > 0) || !gproji_is_finite(value)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, value);
-        return -1;
-    }
-    return gproji_add_total(form, rule, length_price, area_price, value, HUGE_VAL, weight);
-}
-
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight) {
-    return gproji_add_prescribed_total(form, &gproji_total_area_rule, 0, 1, area, weight);
+    return gproji_add_total(form, &gproji_total_area_rule, 0, 1, area, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, double max, double weight) {
@@ -21308,7 +21276,7 @@ GPROJ_API int32_t gproj_add_total_area_bounds(gproj_form *form, double min, doub
 }
 
 GPROJ_API int32_t gproj_add_cost(gproj_form *form, double length_price, double area_price, double cost, double weight) {
-    return gproji_add_prescribed_total(form, &gproji_cost_rule, length_price, area_price, cost, weight);
+    return gproji_add_total(form, &gproji_cost_rule, length_price, area_price, cost, HUGE_VAL, weight);
 }
 
 GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, double area_price, double min,
@@ -22252,12 +22220,23 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     return true;
 }
 
-/* Adds an edge's forces, with density w, to the sums in both ends. */
-GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, int32_t edge, double w, double *out) {
-    size_t i = 3 * (size_t)mesh->origin[2 * edge], j = 3 * (size_t)mesh->origin[2 * edge + 1], c;
-    for (c = 0; c < 3; ++c) {
-        out[i + c] += w * (x[i + c] - x[j + c]);
-        out[j + c] -= w * (x[i + c] - x[j + c]);
+/* The density of an edge's force in the caller's units; 0 without forces. */
+GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
+    const gproji_statics *s = form->statics;
+    if (!s || s->force[edge] < 0) return 0;
+    return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
+}
+
+/* out += the sum of forces in each vertex at x. density: per edge; NULL: those of the form, in the caller's units. */
+GPROJI_INTERNAL void gproji_add_forces(const gproj_form *form, const double *x, const double *density, double *out) {
+    int32_t e;
+    for (e = 0; e < form->mesh->edge_count; ++e) {
+        size_t i = 3 * (size_t)form->mesh->origin[2 * e], j = 3 * (size_t)form->mesh->origin[2 * e + 1], c;
+        double w = density ? density[e] : gproji_force_density(form, e);
+        for (c = 0; c < 3; ++c) {
+            out[i + c] += w * (x[i + c] - x[j + c]);
+            out[j + c] -= w * (x[i + c] - x[j + c]);
+        }
     }
 }
 
@@ -22265,9 +22244,9 @@ GPROJI_INTERNAL void gproji_add_force(const gproj_mesh *mesh, const double *x, i
 GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, const double *force, const double *load,
                                        double *out) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t v, e, c;
+    int32_t v, c;
     for (c = 0; c < 3 * mesh->vertex_count; ++c) out[c] = load[c];
-    for (e = 0; force && e < mesh->edge_count; ++e) gproji_add_force(mesh, x, e, force[e], out);
+    if (force) gproji_add_forces(form, x, force, out);
     for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
             if (!(form->statics->axes[v] >> c & 1)) out[3 * (size_t)v + (size_t)c] = 0;
@@ -22457,13 +22436,6 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
 
 /* -- forces for the caller -- */
 
-/* Densities in the caller's units. */
-GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge) {
-    const gproji_statics *s = form->statics;
-    if (!s || s->force[edge] < 0) return 0;
-    return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
-}
-
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
     gproj_code code = gproji_begin_question(form, "get forces", densities != NULL, error);
     int32_t e;
@@ -22530,18 +22502,11 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     return GPROJ_OK;
 }
 
-/* out += the sum of forces in each vertex, at the mesh's positions. */
-GPROJI_INTERNAL void gproji_add_force_sums(const gproj_form *form, double *out) {
-    int32_t e;
-    for (e = 0; e < form->mesh->edge_count; ++e)
-        gproji_add_force(form->mesh, form->mesh->position, e, gproji_force_density(form, e), out);
-}
-
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c;
     gproj_code code = gproj_get_loads(form, reactions, error);
     if (code) return code;
-    gproji_add_force_sums(form, reactions);
+    gproji_add_forces(form, form->mesh->position, NULL, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         bool idle = form->mesh->vertex_halfedge[v] < 0;
         for (c = 0; c < 3; ++c) {
@@ -22584,7 +22549,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];
     }
-    gproji_add_force_sums(form, sum);
+    gproji_add_forces(form, mesh->position, NULL, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         double left[3], given[3];
         if (mesh->vertex_halfedge[v] < 0) continue;
@@ -22818,19 +22783,30 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
-/* Returns which part of an area the row of a corner asks for, and gives the terms their coefficients. */
-GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t corner,
+/* Gives the terms of an item their coefficients, in the order of gproji_add_corner. Returns which part of the area, or
+   of the squared length, the row asks for. */
+GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t item,
                                                gproj_term *term) {
     const gproji_corners *guard = gproji_corners_of(part);
-    int32_t h = corner / 2, face = part->form->mesh->face[h], k, t;
-    bool upright = corner % 2 != 0;
-    double floor = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
-    gproji_corner_normal(part->form, x, x, face, m);
-    if (upright) gproji_copy3(guard->axis + 3 * (size_t)face, m);
-    gproji_corner_area(part->form->mesh, x, h, area);
+    const gproj_mesh *mesh = part->form->mesh;
+    int32_t edge = item - guard->edges, h = item / 2, k, t;
+    bool upright = item % 2 != 0;
+    double m[3], area[3], has;
+    if (edge >= 0) {
+        double length = guard->length[edge], asked;
+        for (k = 0; k < 3; ++k) {
+            term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
+            term[3 * k + 2].a = -2 / (length * length);
+        }
+        asked = gproji_fmin(gproji_edge_length(mesh, x, edge) / length, gproji_corner_wanted);
+        asked = gproji_fmax(asked, gproji_edge_floor);
+        return asked * asked;
+    }
+    gproji_corner_normal(part->form, x, x, mesh->face[h], m);
+    if (upright) gproji_copy3(guard->axis + 3 * (size_t)mesh->face[h], m);
+    gproji_corner_area(mesh, x, h, area);
     has = gproji_dot3(area, m) / guard->size[h];
-    /* the six products of (a x b)'m for each pair a b of the corner, in the order of gproji_set_corner_terms */
-    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6)
+    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6) /* the six products of (a x b)'m for each pair a b of the corner */
         for (k = 0; k < 3; ++k) {
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
@@ -22839,54 +22815,20 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), floor);
 }
 
-/* Likewise for an edge: which part of the squared length. */
-GPROJI_INTERNAL double gproji_linearise_edge(const gproji_part *part, const double *x, int32_t edge, gproj_term *term) {
-    double length = gproji_corners_of(part)->length[edge], has, asked = gproji_edge_floor;
-    int32_t k;
-    for (k = 0; k < 3; ++k) { /* in the order of gproji_set_length_terms */
-        term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
-        term[3 * k + 2].a = -2 / (length * length);
-    }
-    has = gproji_edge_length(part->form->mesh, x, edge) / length;
-    if (!gproji_creeps(part->form->system)) asked = gproji_fmax(gproji_fmin(has, gproji_corner_wanted), asked);
-    return asked * asked;
-}
-
 /* Linearises the rows that act, with the normals at x. */
-GPROJI_INTERNAL void gproji_linearise_corners(const gproji_part *part) {
-    gproj_system *system = part->form->system;
-    const gproji_corners *guard = gproji_corners_of(part);
-    const gproji_group *g = gproji_group_at(system, part->group);
-    const double *x = gproj_system_values(system);
-    int32_t r, count;
-    for (r = 0; r < g->row_count; ++r) {
-        gproj_term *term = gproji_row_terms(system, part->group, r, &count);
-        int32_t item = guard->item[r];
-        double asked;
-        if (!(g->row[r].weight > 0)) continue;
-        asked = item < guard->edges ? gproji_linearise_corner(part, x, item, term)
-                                    : gproji_linearise_edge(part, x, item - guard->edges, term);
-        gproji_place_row(system, part->group, r, g->row[r].weight, -asked);
-    }
-}
-
 GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
                                             const gproj_progress *progress) {
-    (void)system, (void)group, (void)progress;
-    gproji_linearise_corners((const gproji_part *)user);
-}
-
-/* Sets the terms of a corner, without coefficients: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products
-   a_x b_y, - a_y b_x (m_z), a_y b_z, - a_z b_y (m_x), ... */
-GPROJI_INTERNAL void gproji_set_corner_terms(const gproj_mesh *mesh, int32_t h, gproj_term *term) {
-    int32_t vertex[3], c, k, count = 0;
-    for (c = 0; c < 3; ++c, h = mesh->next[h]) vertex[c] = 3 * mesh->origin[h];
-    for (c = 0; c < 3; ++c)
-        for (k = 0; k < 3; ++k) {
-            int32_t a = vertex[c], b = vertex[(c + 1) % 3];
-            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
-            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
-        }
+    const gproji_part *part = (const gproji_part *)user;
+    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_group *g = gproji_group_at(system, group);
+    const double *x = gproj_system_values(system);
+    int32_t r, count;
+    (void)progress;
+    for (r = 0; r < g->row_count; ++r) {
+        gproj_term *term = gproji_row_terms(system, group, r, &count);
+        if (!(g->row[r].weight > 0)) continue;
+        gproji_place_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, guard->item[r], term));
+    }
 }
 
 /* Adds the row of an item, without a weight yet. Returns the number, -1 after an error. */
@@ -22895,13 +22837,18 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
     int32_t edge = item - guard->edges, h = edge < 0 ? item / 2 : mesh->face[2 * edge] < 0 ? 2 * edge + 1 : 2 * edge;
-    int32_t row;
-    if (edge < 0)
-        gproji_set_corner_terms(mesh, h, term);
-    else
-        gproji_set_length_terms(mesh, edge, 0, term);
-    row = gproji_add_safeguard_row(part->form->system, part->group, edge < 0 ? GPROJI_CORNER_TERMS : 9, term, 0,
-                                   mesh->face[h]);
+    int32_t vertex[3] = {mesh->origin[h], mesh->origin[mesh->next[h]], mesh->origin[mesh->next[mesh->next[h]]]};
+    int32_t count = 0, c, k, row;
+    /* A corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
+       a_y b_z, - a_z b_y (m_x), ...; coefficients by gproji_linearise_corner. */
+    for (c = 0; edge < 0 && c < 3; ++c)
+        for (k = 0; k < 3; ++k) {
+            int32_t a = 3 * vertex[c], b = 3 * vertex[(c + 1) % 3];
+            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
+            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
+        }
+    if (edge >= 0) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
+    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, mesh->face[h]);
     if (row < 0) return -1;
     guard->item[row] = item;
     guard->row[item] = row;
@@ -22983,21 +22930,8 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
                          item < guard->edges ? sqrt(guard->size[item / 2]) : guard->length[item - guard->edges], 0);
         woken = true;
     }
-    if (woken) gproji_linearise_corners(part);
+    if (woken) gproji_refresh_corners(part, system, part->group, NULL);
     return woken;
-}
-
-/* Has an edge become short, and lost most of the length in the step to x? */
-GPROJI_INTERNAL bool gproji_refuse_edges(const gproji_part *part, const double *before, const double *x) {
-    const gproj_mesh *mesh = part->form->mesh;
-    const double *length = gproji_corners_of(part)->length;
-    int32_t e;
-    for (e = 0; e < mesh->edge_count; ++e) {
-        double now = gproji_edge_length(mesh, x, e);
-        if (now < gproji_corner_least * length[e] && now < gproji_edge_kept * gproji_edge_length(mesh, before, e))
-            return true;
-    }
-    return false;
 }
 
 /* Has a corner become small, and lost most of the area in the step to x, or an edge the length? */
@@ -23005,7 +22939,7 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
     const gproj_form *form = (const gproj_form *)user;
     const gproji_part *part = gproji_acting_corners(form);
     const gproj_mesh *mesh = form->mesh;
-    int32_t f, h, c;
+    int32_t f, h, c, e;
     for (f = 0; part && f < mesh->face_count; ++f) {
         const double *size = gproji_corners_of(part)->size;
         double m[3], area[3], now, had;
@@ -23021,7 +22955,12 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
             gproji_corner_normal(form, x, before, f, m);
         }
     }
-    return part && gproji_refuse_edges(part, before, x);
+    for (e = 0; part && e < mesh->edge_count; ++e) {
+        double length = gproji_corners_of(part)->length[e], now = gproji_edge_length(mesh, x, e);
+        if (now < gproji_corner_least * length && now < gproji_edge_kept * gproji_edge_length(mesh, before, e))
+            return true;
+    }
+    return false;
 }
 
 /* Passes the rows during a solve, and the sizes and axes from when it began. */
@@ -23045,7 +22984,7 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
         else
             gproji_pass_safeguard_row(stream, s, part->group, guard->row[item], passing);
     }
-    if (stream->mode == GPROJI_READ) gproji_linearise_corners(part);
+    if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, NULL);
 }
 
 static const gproji_acts gproji_corner_acts = {gproji_refresh_corners, NULL, NULL, gproji_pass_corners};
@@ -23116,29 +23055,6 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
 
 /* -- equilibrium -- */
 
-/* Finds the three rows of equilibrium with the largest |phi|, of different vertices; -1 if there are fewer. */
-GPROJI_INTERNAL void gproji_worst_balanced(const gproj_form *form, int32_t vertex[3]) {
-    const gproji_group *g = gproji_group_at(form->system, form->statics->group);
-    double phi[3] = {0, 0, 0};
-    int32_t r, k;
-    for (k = 0; k < 3; ++k) vertex[k] = -1;
-    for (r = 0; r < g->row_count; ++r) {
-        double size = fabs(g->row[r].phi);
-        int32_t v = g->row[r].element;
-        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
-        if (k == 3) k = 2;
-        if (!(size > phi[k])) continue;
-        phi[k] = size;
-        vertex[k] = v;
-        for (; k > 0 && phi[k] > phi[k - 1]; --k) {
-            double other = phi[k - 1];
-            int32_t w = vertex[k - 1];
-            phi[k - 1] = phi[k], vertex[k - 1] = vertex[k];
-            phi[k] = other, vertex[k] = w;
-        }
-    }
-}
-
 /* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a
    bound on forces, does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
@@ -23147,13 +23063,25 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
     size_t length = strlen(result->message);
+    double phi[3] = {0, 0, 0};
     char others[48];
-    int32_t vertex[3];
+    int32_t vertex[3] = {-1, -1, -1}, r, k;
+    const gproji_group *g;
     gproj_forces forces;
     if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
         return false;
     forces = gproj_measure_forces(form, NULL);
-    gproji_worst_balanced(form, vertex);
+    /* The three rows with the largest |phi|, of different vertices; -1 if there are fewer. */
+    g = gproji_group_at(form->system, s->group);
+    for (r = 0; r < g->row_count; ++r) {
+        double size = fabs(g->row[r].phi);
+        int32_t v = g->row[r].element;
+        for (k = 0; k < 3 && vertex[k] != v && vertex[k] >= 0; ++k) continue; /* its place, or a free one */
+        if (k == 3) k = 2;
+        if (!(size > phi[k])) continue;
+        for (; k > 0 && size > phi[k - 1]; --k) phi[k] = phi[k - 1], vertex[k] = vertex[k - 1];
+        phi[k] = size, vertex[k] = v;
+    }
     gproji_format(others, sizeof others, "vertex ");
     if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
     gproji_format(result->message + length, sizeof result->message - length,
@@ -23393,31 +23321,27 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     }
 }
 
-/* Does a row hold vertices in space: linear in them and changed by a translation, or quadratic in them, as lengths and
-   areas are? Differences of vertices, and products with normals, do not hold. */
-GPROJI_INTERNAL bool gproji_row_holds(const gproj_form *form, const gproji_group *g, const gproji_row *row) {
-    int32_t vertices = 3 * form->mesh->vertex_count;
-    double sum[3] = {0, 0, 0};
-    int64_t t;
-    for (t = row->term; t < (int64_t)row->term + row->terms; ++t) {
-        int32_t i = gproji_variable_of(g, row, g->term[t].i), j = gproji_variable_of(g, row, g->term[t].j);
-        if (i >= vertices) continue;
-        if (j >= 0 && j < vertices) return true;
-        if (j < 0) sum[i % 3] += g->term[t].a;
-    }
-    return fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9;
-}
-
-/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? */
+/* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? A bound holds
+   it if a mesh that has shrunk to the origin violates it. Other rows do if they are linear in vertices and changed by a
+   translation, or quadratic in them, as lengths and areas are. Differences of vertices, and products with normals, do
+   not. */
 GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
-    int32_t i, r;
+    int32_t vertices = 3 * form->mesh->vertex_count, i, r;
+    int64_t t;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         for (r = 0; g->role < GPROJI_GUARD && g->schedule.weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
+            bool bound = g->kind == GPROJ_BOUND, held = bound ? row->constant < 0 : g->global;
+            double sum[3] = {0, 0, 0};
             if (!(row->weight > 0)) continue;
-            /* A bound holds the mesh if a mesh that has shrunk to the origin violates it. */
-            if (g->kind == GPROJ_BOUND ? row->constant < 0 : g->global || gproji_row_holds(form, g, row)) return true;
+            for (t = 0; t < (int64_t)row->terms && !bound && !held; ++t) {
+                const gproj_term *term = g->term + row->term + t;
+                int32_t v = gproji_variable_of(g, row, term->i), w = gproji_variable_of(g, row, term->j);
+                held = v < vertices && w >= 0 && w < vertices;
+                if (v < vertices && w < 0) sum[v % 3] += term->a;
+            }
+            if (held || fabs(sum[0]) + fabs(sum[1]) + fabs(sum[2]) > 1e-9) return true;
         }
     }
     return false;
@@ -23425,17 +23349,36 @@ GPROJI_INTERNAL bool gproji_is_held(const gproj_form *form) {
 
 /* -- damage -- */
 
-/* Appends damage of all kinds, with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
-GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_damages *d, char *text, size_t size) {
+/* Counts the damage since gproj_form_create. A mesh can satisfy everything and yet be spoiled: the verdict says so. */
+GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
     static const char *const words[GPROJI_DAMAGE_COUNT][2] = {
         {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
         {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
         {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
+    static const char help[] =
+        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
+        "keep it whole";
+    const gproj_mesh *mesh = form->mesh;
+    const double *x = gproj_system_values(form->system);
+    size_t size = sizeof result->message, length = strlen(result->message);
+    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
     const char *between = "";
+    char *text = result->message;
+    gproji_damages d;
     int32_t kind;
+    gproji_find_damages(mesh, x, form->original, &d);
+    result->spoiled = gproji_spoiled_of(&d);
+    if (result->outcome != GPROJ_CONVERGED &&
+        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
+        return; /* there is worse to tell */
+    if (shrunk < 0.2)
+        gproji_format(text + length, size - length,
+                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+    if (shrunk < 0.2 || result->spoiled.total == 0) return;
+    /* All kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
+    length = gproji_append(text, size, length, "; but the mesh is spoiled: ", 27);
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
-        int32_t count = d->count[kind], at = d->first[kind];
-        size_t length = strlen(text);
+        int32_t count = d.count[kind], at = d.first[kind];
         if (count == 0) continue;
         gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
                       count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
@@ -23445,34 +23388,10 @@ GPROJI_INTERNAL void gproji_list_damages(const gproj_mesh *mesh, const gproji_da
                           mesh->origin[2 * at + 1]);
         else
             gproji_append(text, size, length, ")", 1);
+        length = strlen(text);
         between = ", ";
     }
-}
-
-/* Counts the damage since gproj_form_create. A mesh can satisfy everything and yet be spoiled: the verdict says so. */
-GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *result) {
-    static const char help[] =
-        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
-        "keep it whole";
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    size_t size = sizeof result->message, length = strlen(result->message);
-    double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
-    gproji_damages d;
-    gproji_find_damages(mesh, x, form->original, &d);
-    result->spoiled = gproji_spoiled_of(&d);
-    if (result->outcome != GPROJ_CONVERGED &&
-        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
-        return; /* there is worse to tell */
-    if (shrunk < 0.2) {
-        gproji_format(result->message + length, size - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
-    } else if (result->spoiled.total > 0) {
-        length = gproji_append(result->message, size, length, "; but the mesh is spoiled: ", 27);
-        gproji_list_damages(mesh, &d, result->message, size);
-        length = strlen(result->message);
-        if (length + sizeof help <= size) gproji_append(result->message, size, length, help, sizeof help - 1);
-    }
+    if (length + sizeof help <= size) gproji_append(text, size, length, help, sizeof help - 1);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
@@ -23540,6 +23459,11 @@ GPROJI_INTERNAL void gproji_store_positions(gproj_form *form, const double *befo
         else
             gproji_copy3(before + i, form->mesh->position + i);
     }
+}
+
+/* Puts the mesh back to its positions before the solve or the drag. */
+GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
+    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
 /* Is there a wish of the caller's, or for the release of a drag, with a weight? */
@@ -23618,40 +23542,19 @@ static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          
 static const gproji_rule gproji_drag_handles_rule = {"drag handles",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
                                                      GPROJI_OWN_DRAG_HANDLES, GPROJI_ORDINARY, NULL};
 
-GPROJI_INTERNAL void gproji_add_drag_fairness(gproj_form *form) {
-    gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
-}
-
-GPROJI_INTERNAL void gproji_add_drag_handles(gproj_form *form) {
-    gproji_add_points(gproji_new_selected_part(form, &gproji_drag_handles_rule, gproji_select_all), NULL, 0);
-}
-
 /* Adds a group of the library's own, without a weight, if it is missing. */
 GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
-    static void (*const add[GPROJI_OWN_COUNT])(gproj_form *) = {
-        NULL,                         /* the caller's */
-        gproji_add_default_closeness, /* in the order of gproji_own */
-        gproji_add_guard,
-        gproji_add_force_guidance,
-        gproji_add_drag_fairness,
-        gproji_add_drag_handles,
-        gproji_add_metric,
-        gproji_add_corners,
-        gproji_add_force_metric};
-    if (gproji_form_ready(form) && !gproji_own_part(form, own)) add[own](form);
-}
-
-/* Lets steps be measured by their smoothness (see >>loop), or not. */
-GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, bool wanted) {
-    bool forces = form->statics && gproji_is_on(form, form->statics->group);
-    const gproji_part *smooth, *brake;
-    if (wanted) gproji_add_own_group(form, GPROJI_OWN_METRIC);
-    if (wanted && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
-    if (!gproji_form_ready(form)) return;
-    smooth = gproji_own_part(form, GPROJI_OWN_METRIC), brake = gproji_own_part(form, GPROJI_OWN_BRAKE);
-    if (smooth) gproj_system_set_schedule(form->system, smooth->group, gproj_keep(wanted ? gproji_metric_smooth : 0));
-    if (brake)
-        gproj_system_set_schedule(form->system, brake->group, gproj_keep(wanted && forces ? gproji_metric_force : 0));
+    const gproji_rule *points = own == GPROJI_OWN_CLOSENESS      ? &gproji_default_closeness_rule
+                                : own == GPROJI_OWN_DRAG_HANDLES ? &gproji_drag_handles_rule
+                                                                 : NULL;
+    if (!gproji_form_ready(form) || gproji_own_part(form, own)) return;
+    if (points) gproji_add_points(gproji_new_selected_part(form, points, gproji_select_all), NULL, 0);
+    if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
+    if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
+    if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
+    if (own == GPROJI_OWN_FORCES) gproji_add_force_guidance(form);
+    if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
+    if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
 }
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
@@ -23707,22 +23610,6 @@ GPROJI_INTERNAL void gproji_settle_form(void *user, double *x) {
     }
 }
 
-/* The hooks that a form adds to its system's steps. */
-GPROJI_INTERNAL gproji_hooks gproji_form_hooks(gproj_form *form) {
-    const gproj_solve_options *options = &form->solve.loop.options;
-    gproji_hooks hooks;
-    memset(&hooks, 0, sizeof hooks);
-    hooks.user = form;
-    if (options->nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks.refuse = gproji_refuse_turned;
-    if (!options->smooth || options->nearest) return hooks;
-    if (gproji_is_on(form, form->planarity)) hooks.settle = gproji_settle_form;
-    if (!gproji_own_part(form, GPROJI_OWN_CORNERS)) return hooks;
-    hooks.inspect = gproji_inspect_corners;
-    hooks.wake = gproji_wake_corners;
-    hooks.refuse = gproji_refuse_corners;
-    return hooks;
-}
-
 /* -- a solve, at once or in frames -- */
 
 /* A result that says why a call is wrong and leaves the form as it is. */
@@ -23738,6 +23625,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric;
+    const gproji_part *part;
     int32_t guided;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23751,7 +23640,16 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
     if (!gproji_form_ready(form)) goto failed;
     guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || smooth, nearest);
-    gproji_set_metric(form, smooth && !options->skip_closeness);
+    /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
+    metric = smooth && !options->skip_closeness;
+    if (metric) gproji_add_own_group(form, GPROJI_OWN_METRIC);
+    if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
+    if (!gproji_form_ready(form)) goto failed;
+    part = gproji_own_part(form, GPROJI_OWN_METRIC);
+    if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
+    part = gproji_own_part(form, GPROJI_OWN_BRAKE);
+    if (part)
+        gproj_system_set_schedule(form->system, part->group, gproj_keep(metric && forces ? gproji_metric_force : 0));
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
     gproji_set_corners(form, smooth && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
@@ -23760,30 +23658,11 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     solve->loop.wish_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
-    if (form->statics && gproji_is_on(form, form->statics->group))
-        solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
+    if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
     return false;
-}
-
-/* Adds to the verdict of a solve that has ended. */
-GPROJI_INTERNAL void gproji_finish_solve(gproj_form *form) {
-    static const char shrinks[] =
-        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
-    gproj_result *result = &form->solve.loop.result;
-    if (gproji_has_active_wish(form) && !gproji_is_held(form))
-        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
-    if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
-    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
-        gproji_tell_held(form, result);
-        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
-    }
-    gproji_tell_spoiled(form, result);
-    if (result->outcome != GPROJ_CONVERGED) return;
-    if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
-    if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
 }
 
 /* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has
@@ -23809,19 +23688,44 @@ GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     return true;
 }
 
-/* Runs form->solve for `seconds` (see gproji_run) and writes the positions back. */
+/* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
-    gproji_solve *solve = &form->solve;
-    bool ended;
-    solve->loop.hooks = gproji_form_hooks(form);
-    ended = gproji_run(&solve->loop, seconds);
-    if (ended) gproji_doubt_equilibrium(form, &solve->loop.result);
-    if (ended) solve->on = false, solve->finished = true;
-    if (solve->loop.result.outcome == GPROJ_FAILED) return solve->loop.result;
-    if (gproji_ends_beyond(form)) return solve->loop.result;
+    static const char shrinks[] =
+        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
+    gproji_loop *loop = &form->solve.loop;
+    gproj_result *result = &loop->result;
+    gproji_hooks *hooks = &loop->hooks;
+    bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended;
+    /* 1. What the form adds to the system's steps. */
+    memset(hooks, 0, sizeof *hooks);
+    hooks->user = form;
+    if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
+    if (smooth && gproji_is_on(form, form->planarity)) hooks->settle = gproji_settle_form;
+    if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
+        hooks->inspect = gproji_inspect_corners;
+        hooks->wake = gproji_wake_corners;
+        hooks->refuse = gproji_refuse_corners;
+    }
+    /* 2. The steps. */
+    ended = gproji_run(loop, seconds);
+    if (ended) gproji_doubt_equilibrium(form, result);
+    if (ended) form->solve.on = false, form->solve.finished = true;
+    if (result->outcome == GPROJ_FAILED || gproji_ends_beyond(form)) return *result;
     gproji_store_positions(form, form->before);
-    if (ended) gproji_finish_solve(form);
-    return solve->loop.result;
+    if (!ended) return *result;
+    /* 3. The verdict, clause by clause. */
+    if (gproji_has_active_wish(form) && !gproji_is_held(form))
+        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
+    if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
+        gproji_tell_held(form, result);
+        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
+    }
+    gproji_tell_spoiled(form, result);
+    if (result->outcome != GPROJ_CONVERGED) return *result;
+    if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
+    if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
+    return *result;
 }
 
 /* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth
@@ -23867,7 +23771,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
                                                  const gproj_solve_options *options) {
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
-    size_t count = (size_t)gproj_system_variable_count(s), positions = 3 * (size_t)form->mesh->vertex_count;
+    size_t count = (size_t)gproj_system_variable_count(s);
     double *start = (double *)gproji_take(&form->own, count, sizeof *start);
     double *end =
         (double *)gproji_take(&form->own, count, sizeof *end); /* of the best attempt, if it was not the last */
@@ -23892,7 +23796,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
         /* 2. Back to the start, forces included, and again. */
         if (here) memcpy(end, x, count * sizeof *end);
-        memcpy(form->mesh->position, form->before, positions * sizeof *form->before);
+        gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
         other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
@@ -24011,33 +23915,12 @@ enum {
 
 /* -- the state -- */
 
-/* Passes a solve in frames, if one is on. */
-GPROJI_INTERNAL gproji_passing gproji_pass_solve(gproji_stream *stream, gproj_form *form) {
-    gproji_solve solve = form->solve;
-    gproji_passing passing;
-    if (!gproji_pass_bool(stream, &solve.on)) {
-        if (stream->mode == GPROJI_READ) form->solve.on = form->solve.finished = false;
-        return GPROJI_PASS_NONE;
-    }
-    passing = gproji_pass_loop(stream, form->system, &solve.loop);
-    if (stream->mode != GPROJI_READ) return passing;
-    if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
-    solve.structure = gproji_structure_of(form->system);
-    form->solve = solve;
-    return passing;
-}
-
-/* Passes a group, and what its rule keeps. */
-GPROJI_INTERNAL void gproji_pass_part(gproji_stream *stream, gproj_form *form, int32_t group, gproji_passing passing) {
-    gproji_part *part = gproji_part_of(form, group);
-    gproji_pass_group(stream, form->system, group, gproji_own_of(form, group) != GPROJI_OWN_NONE, passing);
-    if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
-}
-
-/* Passes the groups, each behind a byte for whom it belongs to; groups that do not come in lose their weight. */
+/* Passes the groups and what their rules keep, each behind a byte for whom it belongs to; groups that do not come in
+   lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
+    gproji_part *part;
     count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
     for (k = 0; k < count && !stream->wrong; ++k) {
         int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_own_of(form, k), group = -1;
@@ -24049,10 +23932,13 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             group = gproji_own_group(form, (gproji_own)kind);
             seen[kind] = true;
         }
-        if (group < 0 || group >= have)
+        if (group < 0 || group >= have) {
             gproji_spoil(stream, "a group is not one of the form");
-        else
-            gproji_pass_part(stream, form, group, passing);
+            break;
+        }
+        part = gproji_part_of(form, group);
+        gproji_pass_group(stream, form->system, group, kind != GPROJI_OWN_NONE, passing);
+        if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
         if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
@@ -24092,12 +23978,23 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
 
 /* Passes the state between head and checksum. */
 GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) {
-    gproji_passing passing;
+    gproji_passing passing = GPROJI_PASS_NONE;
+    gproji_solve solve = form->solve;
+    bool read = stream->mode == GPROJI_READ;
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, gproj_system_values(form->system), (size_t)gproj_system_variable_count(form->system));
-    passing = gproji_pass_solve(stream, form);
+    /* A solve in frames, if one is on. */
+    if (gproji_pass_bool(stream, &solve.on))
+        passing = gproji_pass_loop(stream, form->system, &solve.loop);
+    else if (read)
+        form->solve.on = form->solve.finished = false;
+    if (read && solve.on) {
+        if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
+        solve.structure = gproji_structure_of(form->system);
+        form->solve = solve;
+    }
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
     if (form->statics) {
         gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
@@ -24314,26 +24211,6 @@ GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double 
     }
 }
 
-/* Finds the responses Q by (1). restore: `base` moves by a step that takes the residual off, too. False: the matrix
-   cannot be factored. */
-GPROJI_INTERNAL bool gproji_find_responses(gproj_drag *drag, bool restore) {
-    size_t n = (size_t)drag->variables;
-    gproji_tangent how;
-    int64_t e;
-    int32_t j;
-    /* Column 3 k + c begins as the force of handle k along axis c. */
-    memset(drag->motion, 0, n * (size_t)drag->columns * sizeof *drag->motion);
-    for (j = 0; j < drag->columns; ++j)
-        for (e = drag->handle.start[j / 3]; e < drag->handle.start[j / 3 + 1]; ++e)
-            drag->motion[n * (size_t)j + 3 * (size_t)drag->handle.vertex[e] + (size_t)(j % 3)] +=
-                drag->handle.weight[e];
-    how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light;
-    how.light_from = 3 * drag->form->mesh->vertex_count;
-    how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
-    drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
-    return gproji_project(drag->form->system, &how, drag->columns, drag->motion, restore ? drag->base : NULL);
-}
-
 /* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
 GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
     size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
@@ -24377,58 +24254,60 @@ GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
     drag->info.freedom = r;
 }
 
-/* pull = (L'L)^-1 L', the pseudo-inverse of L. */
-GPROJI_INTERNAL void gproji_invert_lift(gproj_drag *drag) {
-    int32_t rank = drag->info.freedom, m = drag->columns, i, j;
-    double *column = drag->work + (size_t)rank * (size_t)rank;
-    for (i = 0; i < rank; ++i)
-        for (j = 0; j <= i; ++j)
-            drag->work[(size_t)i * (size_t)rank + (size_t)j] =
-                gproji_dot(drag->lift + (size_t)m * (size_t)i, drag->lift + (size_t)m * (size_t)j, (size_t)m);
-    gproji_small_factor(drag->work, rank, rank, DBL_MIN);
-    for (j = 0; j < m; ++j) {
-        for (i = 0; i < rank; ++i) column[i] = drag->lift[(size_t)m * (size_t)i + (size_t)j];
-        gproji_small_solve(drag->work, rank, rank, column);
-        for (i = 0; i < rank; ++i) drag->pull[(size_t)m * (size_t)i + (size_t)j] = column[i];
+/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
+   After an error earlier responses are lost. */
+GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore, gproj_error *error) {
+    gproj_system *system = drag->form->system;
+    const gproji_handle_list *list = &drag->handle;
+    const double *x = gproj_system_values(system);
+    size_t n = (size_t)drag->variables, m = (size_t)drag->columns, rank;
+    int32_t light_from = 3 * drag->form->mesh->vertex_count, halving, i, j;
+    double residual = gproji_see_hard(system, NULL), *column;
+    gproji_tangent how;
+    int64_t e;
+    if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
+    /* 1. The responses Q by (1): column 3 k + c begins as the force of handle k along axis c. */
+    memcpy(drag->base, x, n * sizeof *drag->base);
+    memset(drag->motion, 0, n * m * sizeof *drag->motion);
+    for (j = 0; j < drag->columns; ++j)
+        for (e = list->start[j / 3]; e < list->start[j / 3 + 1]; ++e)
+            drag->motion[n * (size_t)j + 3 * (size_t)list->vertex[e] + (size_t)(j % 3)] += list->weight[e];
+    how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light, how.light_from = light_from;
+    how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
+    drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
+    if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL)) {
+        if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                           "drag: what must hold cannot be linearised here: its numbers are too large or too "
+                           "different");
     }
-}
-
-/* Halves the step from x to `base` until no vertex moves by more than a mean edge and the residual is below that at x.
-   Where rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. */
-GPROJI_INTERNAL void gproji_shorten_restoration(gproj_drag *drag, double residual) {
-    const double *x = gproj_system_values(drag->form->system);
-    int32_t vertices = drag->form->mesh->vertex_count, halving, i;
-    for (halving = 0; halving <= GPROJI_DRAG_HALVINGS; ++halving) {
-        double restored, most = 0;
-        for (i = 0; i < vertices; ++i)
-            most = gproji_fmax(most, gproji_distance3(drag->base + 3 * (size_t)i, x + 3 * (size_t)i));
-        restored = gproji_see_hard(drag->form->system, drag->base);
-        if (restored < residual && most <= 1) return;
+    /* 2. The step from x to `base` is halved until no vertex moves by more than a mean edge and the residual is below
+       that at x: where rows nearly depend on each other the least step that satisfies them may be hundreds of edges
+       long. */
+    for (halving = 0; restore && halving <= GPROJI_DRAG_HALVINGS; ++halving) {
+        double most = 0;
+        for (i = 0; i < light_from; i += 3) most = gproji_fmax(most, gproji_distance3(drag->base + i, x + i));
+        if (gproji_see_hard(system, drag->base) < residual && most <= 1) break;
         for (i = 0; i < drag->variables; ++i)
             drag->base[i] = halving < GPROJI_DRAG_HALVINGS ? (drag->base[i] + x[i]) / 2 : x[i];
     }
-}
-
-/* Linearises at x, and finds how the form can follow the handles there. restore: a step takes the residual off, too.
-   False: that could not be done, and earlier responses are lost. */
-GPROJI_INTERNAL bool gproji_linearise_drag(gproj_drag *drag, bool restore) {
-    double residual = gproji_see_hard(drag->form->system, NULL);
-    if (!gproji_form_ready(drag->form)) return false;
-    memcpy(drag->base, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->base);
-    if (!gproji_find_responses(drag, restore)) return false;
-    if (restore) gproji_shorten_restoration(drag, residual);
     gproji_orthonormalise(drag);
-    gproji_invert_lift(drag);
+    /* 3. pull = (L'L)^-1 L', the pseudo-inverse of L. */
+    rank = (size_t)drag->info.freedom;
+    column = drag->work + rank * rank;
+    for (i = 0; i < drag->info.freedom; ++i)
+        for (j = 0; j <= i; ++j)
+            drag->work[(size_t)i * rank + (size_t)j] =
+                gproji_dot(drag->lift + m * (size_t)i, drag->lift + m * (size_t)j, m);
+    gproji_small_factor(drag->work, drag->info.freedom, drag->info.freedom, DBL_MIN);
+    for (j = 0; j < drag->columns; ++j) {
+        for (i = 0; i < drag->info.freedom; ++i) column[i] = drag->lift[m * (size_t)i + (size_t)j];
+        gproji_small_solve(drag->work, drag->info.freedom, drag->info.freedom, column);
+        for (i = 0; i < drag->info.freedom; ++i) drag->pull[m * (size_t)i + (size_t)j] = column[i];
+    }
     gproji_gather_handles(drag, drag->base, drag->held);
     drag->info.linearisations++;
-    return true;
-}
-
-/* Says why gproji_linearise_drag failed. */
-GPROJI_INTERNAL gproj_code gproji_fail_linearising(const gproj_drag *drag, gproj_error *error) {
-    if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
-    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                       "drag: what must hold cannot be linearised here: its numbers are too large or too different");
+    return GPROJ_OK;
 }
 
 /* -- moves -- */
@@ -24495,11 +24374,10 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     gproji_follow_handles(drag);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
     if (bound > 0 && !(gproji_see_hard(drag->form->system, NULL) <= bound)) {
-        if (!gproji_linearise_drag(drag, true)) {
+        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) {
             /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
-            gproji_fail_linearising(drag, &drag->error);
             memcpy(gproj_system_values(drag->form->system), drag->last, (size_t)drag->variables * sizeof *drag->last);
-            if (!gproji_linearise_drag(drag, false)) drag->info.freedom = 0;
+            if (gproji_linearise_drag(drag, false, NULL) != GPROJ_OK) drag->info.freedom = 0;
             drag->info.behind = behind;
             return drag->error.code;
         }
@@ -24609,7 +24487,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     drag->structure = gproji_structure_of(s);
     if (!gproji_form_ready(form) || !gproji_begin_tangent(s, GPROJI_DRAG_SIDES))
         return gproji_form_ready(form) ? GPROJ_ERROR_MEMORY : gproj_form_error(form)->code;
-    return gproji_linearise_drag(drag, false) ? GPROJ_OK : gproji_fail_linearising(drag, error);
+    return gproji_linearise_drag(drag, false, error);
 }
 
 /* Refuses a drag beside a solve or another drag, forces without values, bad options, handles that are none. */
@@ -24684,11 +24562,6 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
-/* Puts the mesh back to its positions before the drag. */
-GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
-    memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
-}
-
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     gproj_form *form;
     if (!drag) return;
@@ -24721,21 +24594,30 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
-/* Gives the groups of the release their rows: fairness as before the drag, handles at x, all else where it was. */
-GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
-    const gproj_form *form = drag->form;
-    gproj_system *s = form->system;
-    int32_t soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    int32_t group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), r, k, c;
-    const gproji_group *fairness = gproji_group_at(s, soft), *at = gproji_group_at(s, group);
-    const double *x = gproj_system_values(s);
+GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
+    gproj_form *form;
+    gproj_system *s;
+    const gproji_group *fairness, *at;
+    const double *x;
+    int32_t soft, group, r, k, c;
     int64_t e;
-    /* 1. Fairness as at the beginning. */
+    if (!drag || drag->released) return false;
+    form = drag->form;
+    s = form->system;
+    drag->released = true;
+    gproji_reset_mesh(form);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
+    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    if (!gproji_form_ready(form)) return false;
+    soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
+    x = gproj_system_values(s);
+    /* 1. The rows of the groups: fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
         gproj_system_set_row(s, soft, r, NULL, 0);
         gproj_system_set_row(s, soft, r, NULL, -gproji_row_value(fairness, r, drag->first));
     }
-    /* 2. All vertices stay, with a little weight; */
+    /* All vertices stay, with a little weight; */
     for (r = 0; r < at->row_count; ++r) {
         gproj_system_set_row(s, group, r, NULL, -drag->first[r]);
         gproj_system_set_row_weight(s, group, r, gproji_drag_rest);
@@ -24753,20 +24635,8 @@ GPROJI_INTERNAL void gproji_set_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-}
-
-GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
-    gproj_form *form;
-    if (!drag || drag->released) return false;
-    form = drag->form;
-    drag->released = true;
-    gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
-    if (!gproji_form_ready(form)) return false;
-    gproji_set_release(drag);
     gproji_schedule_release(drag, true);
-    /* A solve is refused during a drag, but for this one. */
+    /* 2. A solve is refused during a drag, but for this one. */
     form->drag = NULL;
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
     form->drag = drag;
