@@ -22790,16 +22790,16 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     const gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     int32_t edge = item - guard->edges, h = item / 2, k, t;
-    bool upright = item % 2 != 0;
-    double m[3], area[3], has;
+    bool upright = item % 2 != 0, creeps = gproji_creeps(part->form->system);
+    double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
     if (edge >= 0) {
-        double length = guard->length[edge], asked;
+        double length = guard->length[edge], asked = gproji_edge_floor;
         for (k = 0; k < 3; ++k) {
             term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
             term[3 * k + 2].a = -2 / (length * length);
         }
-        asked = gproji_fmin(gproji_edge_length(mesh, x, edge) / length, gproji_corner_wanted);
-        asked = gproji_fmax(asked, gproji_edge_floor);
+        has = gproji_edge_length(mesh, x, edge) / length;
+        if (!creeps) asked = gproji_fmax(gproji_fmin(has, gproji_corner_wanted), asked);
         return asked * asked;
     }
     gproji_corner_normal(part->form, x, x, mesh->face[h], m);
@@ -22811,8 +22811,8 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
         }
-    if (gproji_creeps(part->form->system)) return floor;
-    return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), floor);
+    if (creeps) return least;
+    return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), least);
 }
 
 /* Linearises the rows that act, with the normals at x. */
