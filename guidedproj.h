@@ -10740,7 +10740,7 @@ static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffe
 static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
 static const double gproji_shortest = 0.125;      /* part of a step whose local unknowns are settled */
-/* A residual below the first that keeps more than the second part of itself in so many iterations creeps. */
+/* A residual below the first that keeps more than the second part of itself from one look to the next creeps. */
 static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
 enum {
     GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
@@ -10751,7 +10751,7 @@ enum {
     GPROJI_ACTIVATIONS = 4,     /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
     GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
-    GPROJI_CREEP_ITERATIONS = 6,
+    GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
     GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
@@ -11340,7 +11340,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     } else {
         merit = gproji_merit_at(&course, 1);
         if (!(merit <= DBL_MAX)) return 0;
-        loop->agreement = none > course.model ? (none - merit) / promised : 1;
+        loop->agreement = promised > 0 ? (none - merit) / promised : 1;
         if (merit > none) {
             t = gproji_minimise_merit(&course, 0.05, 1);
             return gproji_merit_at(&course, t) < none ? t : 0;

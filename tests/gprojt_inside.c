@@ -28,3 +28,13 @@ bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { r
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {
     return gproji_volume(mesh, position, height, gradient, NULL);
 }
+
+void gprojt_inside_watch(gproj_form *form, bool set, double watched[3]) {
+    gproji_loop *loop = &form->solve.loop;
+    if (set) {
+        form->system->creeping = watched[0] > 0;
+        loop->fallen = watched[1], loop->fall_seen = (int32_t)watched[2];
+    } else {
+        watched[0] = form->system->creeping, watched[1] = loop->fallen, watched[2] = loop->fall_seen;
+    }
+}

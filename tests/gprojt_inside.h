@@ -26,6 +26,10 @@ double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t r
 /* Is a group the solver's own, a safeguard or a metric, which is in no residual? */
 bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group);
 
+/* How a solve's fall has been watched: 0 or 1 for whether it creeps, the residual when it was looked at, the iterations
+   then. Written to the form if `set`, else read from it. */
+void gprojt_inside_watch(gproj_form *form, bool set, double watched[3]);
+
 /* Is end a of an attempt better than b? */
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);
 

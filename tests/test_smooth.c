@@ -297,6 +297,35 @@ GPROJT_TEST(frames_and_states) {
     GPROJT_CHECK(most > 3);
 }
 
+/* States know whether a solve creeps, and when its fall was looked at last. */
+GPROJT_TEST(creeping_is_saved) {
+    gproj_solve_options options = gprojt_smooth();
+    double saved[3] = {1, 0.25, 5}, restored[3] = {0, 0, 0};
+    uint8_t *state = NULL;
+    size_t size = 0;
+    int k, i;
+    for (k = 0; k < 2; ++k) {
+        gproj_mesh *mesh = gprojt_twisted(5, 0.2);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gprojt_add_planar_fixed(form, NULL);
+        if (k == 0) {
+            GPROJT_REQUIRE(gproj_solve_begin(form, 60, &options, NULL));
+            gproj_solve_advance(form, 0);
+            gprojt_inside_watch(form, true, saved);
+            size = gproj_state_size(form);
+            state = (uint8_t *)malloc(size);
+            GPROJT_CHECK(gproj_state_save(form, state, size, NULL) == GPROJ_OK);
+        } else {
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK && gproj_solve_is_on(form));
+            gprojt_inside_watch(form, false, restored);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    for (i = 0; i < 3; ++i) GPROJT_CHECK(fabs(restored[i] - saved[i]) < 1e-12);
+    free(state);
+}
+
 /* A second solve of what holds does nothing, and one after a change goes on. */
 GPROJT_TEST(solved_again) {
     gproj_mesh *mesh = gprojt_twisted(10, 0.1);
@@ -334,6 +363,7 @@ int main(void) {
     GPROJT_RUN(attempts);
     GPROJT_RUN(ends_are_compared);
     GPROJT_RUN(frames_and_states);
+    GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
