@@ -600,6 +600,8 @@ typedef struct gproj_progress {
     int32_t settling;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From 2
                            on a refresh should not switch between pieces (of a curve, say): else it may do so for ever */
     bool tangential;    /* nearest: steps follow the constraints away from the start, and may be long */
+    bool trial;         /* x is the end of a step that may still be taken back: the rows are to fit it, but what a refresh
+                           keeps from call to call should depend on accepted steps only */
 } gproj_progress;
 
 /* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
@@ -7766,6 +7768,13 @@ typedef enum gproji_role {
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
 
+/* How far safeguards give way to what must hold. */
+typedef enum gproji_yielding {
+    GPROJI_YIELD_SLOWLY, /* they ask for what there is */
+    GPROJI_YIELD_FLOOR,  /* the solve creeps: they ask for their floors */
+    GPROJI_YIELD_LAST    /* they ask for the least with which a mesh is sound */
+} gproji_yielding;
+
 /* The variables in rows, row after row, each once in a row. */
 typedef struct gproji_locals {
     int32_t *variable; /* in the order in which terms name them; compiled, narrow rows */
@@ -7934,7 +7943,7 @@ struct gproj_system {
     int32_t variable_count;
     gproj_progress progress;
     double stiffness; /* in steps: factor on the weights of metric groups; 0: they rest */
-    bool creeping;    /* this solve has come near to the end and then fallen slowly: see gproji_watch_fall */
+    gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
     double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
@@ -10706,7 +10715,9 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
    so they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the
    agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or
-   falls short. Once it is small near a solution the metric rests and the last steps are Newton's. A metric that is a
+   falls short. Once it is small near a solution the metric rests and the last steps are Newton's; if such a step fails
+   the metric comes back, and from then on rests only when the merit falls tenfold in a step: until then the stiffness
+   finds the size that steps want between its least and 0, or they would creep with the least. A metric that is a
    brake (in a form: changes of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
@@ -10721,8 +10732,9 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    25 iterations without it need 9 (test_smooth).
 
    A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound.
-   Where safeguards leave the last bit of a residual to fall slowly they may ask for less (gproji_creeps), and they are
-   let go if no step is found with them: constraints come first, and the verdict tells the damage. */
+   Safeguards give way in stages (gproji_yielding): where they leave the last bit of a residual to fall slowly they ask
+   for less; where no step is found with them, for the least if the owner knows one; and then they are let go:
+   constraints come first, and the verdict tells the damage. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
@@ -10736,6 +10748,8 @@ static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
+static const double gproji_stiffness_finest = 1e-6; /* after the metric has rested in vain, */
+static const double gproji_stiffness_left = 0.1; /* while steps leave more than this part of the merit */
 static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffer steps are no help */
 static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
 static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
@@ -10750,7 +10764,8 @@ enum {
     GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
     GPROJI_ACTIVATIONS = 4,     /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most */
+    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most, */
+    GPROJI_SAFE_LAST = 30,      /* and then so many more with the least that they may ask for */
     GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
     GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
@@ -10773,6 +10788,7 @@ typedef struct gproji_hooks {
     bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
     bool (*wake)(void *user); /* gives those rows, at the x before; are there new ones? */
     bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
+    bool least; /* safeguards have a least to ask for before they are let go */
     void *user;
 } gproji_hooks;
 
@@ -10783,6 +10799,23 @@ typedef struct gproji_times {
     double frame;        /* seconds for this run; < 0: until the end */
     int32_t first;       /* iterations before this run */
 } gproji_times;
+
+/* When safeguards give way. */
+typedef struct gproji_watch {
+    double fallen;    /* the residual when its fall was looked at last, */
+    int32_t seen;     /* and the iterations then */
+    int32_t yield_at; /* the iterations after which safeguards yield further, whatever the residual does */
+} gproji_watch;
+
+/* How steps have turned out, for the stiffness of the next ones. */
+typedef struct gproji_trust {
+    double agreement; /* the merit's decrease by the full step, over the one predicted by the linearised rows */
+    double left;      /* the part of the merit that the last step has left */
+    bool factored;    /* the last attempt found a step, whether good or not */
+    bool failed;      /* an attempt of this iteration was not good */
+    bool restless;    /* a step has failed while the metric rested */
+    int32_t wary;     /* iterations in which the stiffness does not fall fast */
+} gproji_trust;
 
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
@@ -10803,13 +10836,9 @@ typedef struct gproji_loop {
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
     double epsilon_least; /* lower end of the eps that follows the residual; less if steps fall short */
-    double fallen;        /* the residual when its fall was looked at last, */
-    int32_t fall_seen;    /* and the iterations then */
-    bool stiff;           /* metric groups have a weight in this solve */
-    double agreement;     /* the merit's decrease by the full step, over the one predicted by the linearised rows */
-    bool factored;        /* the last attempt found a step, whether good or not */
-    bool failed;          /* an attempt of this iteration was not good */
-    int32_t wary;         /* iterations in which the stiffness does not fall fast */
+    gproji_watch watch;
+    bool stiff; /* metric groups have a weight in this solve */
+    gproji_trust trust;
     double shift;         /* nearest: of the last slide with curvature, times s^2 */
     bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
@@ -11244,22 +11273,26 @@ GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
     if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
 }
 
+/* The true merit at x, the end of a step that may be taken back; rows are linearised there. */
+GPROJI_INTERNAL double gproji_try_merit(gproj_system *s) {
+    s->progress.trial = true;
+    gproji_refresh_groups(s);
+    s->progress.trial = false;
+    return gproji_merit_here(s);
+}
+
 /* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is
    above the merit without settling, which `course` knows, local unknowns stay as the step has made them. */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
-    double merit, plain;
-    gproji_refresh_groups(s);
-    merit = gproji_merit_here(s);
+    double merit = gproji_try_merit(s), plain;
     if (merit <= gproji_merit_at(course, t)) return merit;
     gproji_take_step(s, t);
-    gproji_refresh_groups(s);
-    plain = gproji_merit_here(s);
+    plain = gproji_try_merit(s);
     if (plain <= merit) return plain;
     gproji_take_step(s, t);
     gproji_settle(loop);
-    gproji_refresh_groups(s);
-    return merit;
+    return gproji_try_merit(s);
 }
 
 /* For owners that settle local unknowns: goes t of the step and settles them there. Returns the true merit. */
@@ -11318,7 +11351,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     gproj_system *s = loop->system;
     gproji_course course;
     double none, merit, promised, t;
-    loop->agreement = 1;
+    loop->trust.agreement = 1;
     if (loop->options.skip_damping || loop->standing.residual <= 1e-9) return 1; /* near the end rounding decides */
     gproji_merit_along(s, &course);
     none = gproji_merit_at(&course, 0);
@@ -11330,7 +11363,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
         merit = gproji_arrive(loop, 1, &course);
         bent = !s->schur.on && none - merit < gproji_bend_below * promised;
         if (bent) merit = gproji_bend_step(loop, &course, merit);
-        loop->agreement = promised > 0 ? (none - merit) / promised : 1;
+        loop->trust.agreement = promised > 0 ? (none - merit) / promised : 1;
         for (t = 1;
              t > gproji_shortest &&
              (!(merit <= none) || (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)));)
@@ -11340,7 +11373,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     } else {
         merit = gproji_merit_at(&course, 1);
         if (!(merit <= DBL_MAX)) return 0;
-        loop->agreement = promised > 0 ? (none - merit) / promised : 1;
+        loop->trust.agreement = promised > 0 ? (none - merit) / promised : 1;
         if (merit > none) {
             t = gproji_minimise_merit(&course, 0.05, 1);
             return gproji_merit_at(&course, t) < none ? t : 0;
@@ -11476,17 +11509,18 @@ GPROJI_INTERNAL void gproji_begin_stiff(gproj_system *s, double stiffness) { s->
 /* After a good step: the stiffness of the next one. */
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    double factor = loop->agreement > 0.9 ? 0.1 : loop->agreement > 0.5 ? 0.3 : 0.7, stiffness;
-    bool is_short = loop->iteration.length < 1 || loop->agreement < 0.25;
+    double factor = loop->trust.agreement > 0.9 ? 0.1 : loop->trust.agreement > 0.5 ? 0.3 : 0.7, stiffness;
+    bool is_short = loop->iteration.length < 1 || loop->trust.agreement < 0.25;
     int32_t i;
     if (!loop->stiff) return;
-    if (loop->wary > 0) factor = gproji_fmax(factor, 0.5);
-    if (loop->failed) factor = 1;
+    if (loop->trust.wary > 0) factor = gproji_fmax(factor, 0.5);
+    if (loop->trust.failed) factor = 1;
     if (is_short) factor = 2;
-    loop->wary = loop->failed || is_short ? GPROJI_WARY : gproji_max(0, loop->wary - 1);
-    loop->failed = false;
+    loop->trust.wary = loop->trust.failed || is_short ? GPROJI_WARY : gproji_max(0, loop->trust.wary - 1);
+    loop->trust.failed = false;
     stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
-    if (stiffness >= gproji_stiffness_least)
+    if (stiffness >= gproji_stiffness_least ||
+        (loop->trust.restless && loop->trust.left > gproji_stiffness_left && stiffness >= gproji_stiffness_finest))
         gproji_stiffen(loop, stiffness);
     else if (loop->standing.merit - loop->standing.energy > gproji_stiffness_rest ||
              (factor > 1 && loop->standing.residual > gproji_stiffness_ends))
@@ -11510,16 +11544,16 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.factorisations = 0;
     for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
-        double before = loop->standing.residual;
+        gproji_standing before = loop->standing;
         bool stepped;
         /* 1. The full step, and the good part of it: x is the new one, or the old one if there is none. */
         loop->iteration.epsilon = epsilon;
-        loop->factored = gproji_find_bounded_step(loop, epsilon);
-        loop->iteration.length = loop->factored ? gproji_step_length(loop) : 0;
+        loop->trust.factored = gproji_find_bounded_step(loop, epsilon);
+        loop->iteration.length = loop->trust.factored ? gproji_step_length(loop) : 0;
         stepped = loop->iteration.length > 0;
         if (!stepped) {
             gproji_step_back(s);
-            if (loop->factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
+            if (loop->trust.factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
         } else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) {
             loop->iteration.step = gproji_take_step(s, loop->iteration.length);
             gproji_settle(loop);
@@ -11527,7 +11561,9 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         gproji_lap(loop, GPROJ_PHASE_REFRESH);
         if (stepped) gproji_linearise(loop);
         if (stepped && loop->standing.merit <= DBL_MAX) {
-            if (!gproji_wishes_are_on(s) && before < gproji_epsilon_max && loop->standing.residual > 0.5 * before)
+            loop->trust.left = before.merit > 0 ? loop->standing.merit / before.merit : 0;
+            if (!gproji_wishes_are_on(s) && before.residual < gproji_epsilon_max &&
+                loop->standing.residual > 0.5 * before.residual)
                 loop->epsilon_least = gproji_fmax(0.1 * loop->epsilon_least, gproji_epsilon_least);
             return true;
         }
@@ -11537,9 +11573,10 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         }
         gproji_start_bounds(s);
         /* 2. Stiffer steps, or a larger eps if stiffness is no help. */
-        if (loop->stiff && loop->factored && loop->standing.residual > gproji_stiffness_ends) {
-            loop->failed = true;
-            gproji_stiffen(loop, gproji_fmax(3 * s->stiffness, gproji_stiffness_least));
+        if (loop->stiff && loop->trust.factored && loop->standing.residual > gproji_stiffness_ends) {
+            loop->trust.failed = true;
+            loop->trust.restless = loop->trust.restless || !(s->stiffness > 0);
+            gproji_stiffen(loop, s->stiffness > 0 ? 3 * s->stiffness : gproji_stiffness_least);
         } else {
             epsilon *= 10;
         }
@@ -11609,46 +11646,53 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     return true;
 }
 
-/* Lets all safeguards go, when no step is found with them: constraints come first. False: there is none. */
-GPROJI_INTERNAL bool gproji_release_safeguards(gproji_loop *loop) {
+/* Lets safeguards ask for the least, when no step is found with them or their time is over, and next time lets them all
+   go: constraints come first. False: there is none. */
+GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    bool released = false;
+    bool last = s->yield == GPROJI_YIELD_LAST || !loop->hooks.least, some = false;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         if (g->role != GPROJI_SAFEGUARD || !(g->weight > 0)) continue;
-        g->weight = g->schedule.weight = 0;
-        released = true;
+        if (last) g->weight = g->schedule.weight = 0;
+        some = true;
     }
-    if (!released) return false;
+    loop->watch.yield_at = INT32_MAX;
+    if (!some) return false;
+    if (!last && loop->iterations > GPROJI_SAFE_LEAST)
+        loop->watch.yield_at = gproji_min(loop->iterations, loop->result.iterations + GPROJI_SAFE_LAST);
+    if (!last) s->yield = GPROJI_YIELD_LAST;
     if (loop->stiff) gproji_stiffen(loop, 1);
+    if (!last) gproji_linearise(loop);
     loop->best.residual = loop->best.merit = HUGE_VAL;
-    loop->waited = loop->wary = 0;
+    loop->waited = loop->trust.wary = 0;
     return true;
 }
 
-/* Has this solve come near to its end, and then only crept nearer? Safeguards may ask for less then. */
-GPROJI_INTERNAL bool gproji_creeps(const gproj_system *s) { return s->creeping; }
+/* How far should safeguards give way in this solve? */
+GPROJI_INTERNAL gproji_yielding gproji_yield_of(const gproj_system *s) { return s->yield; }
 
 /* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
    are patient: they are made where this one has ended badly. */
 GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
     double residual = loop->standing.residual;
-    if (loop->result.iterations < loop->fall_seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
-    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->fallen)
-        loop->system->creeping = true;
-    loop->fallen = residual;
-    loop->fall_seen = loop->result.iterations;
+    if (loop->result.iterations < loop->watch.seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
+    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen &&
+        loop->system->yield == GPROJI_YIELD_SLOWLY)
+        loop->system->yield = GPROJI_YIELD_FLOOR;
+    loop->watch.fallen = residual;
+    loop->watch.seen = loop->result.iterations;
 }
 
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    int32_t half = loop->iterations / 2 + loop->iterations % 2, safe = gproji_min(half, GPROJI_SAFE_LEAST), n;
+    int32_t half = loop->iterations / 2 + loop->iterations % 2, n;
     bool guided, better;
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
-        if (loop->result.iterations == safe && loop->iterations > GPROJI_SAFE_LEAST) gproji_release_safeguards(loop);
+        if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
         gproji_watch_fall(loop);
         /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
            counts the iterations since the wishes have faded. */
@@ -11670,7 +11714,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (!gproji_iterate(loop)) {
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             if (gproji_holds(loop)) return GPROJ_CONVERGED;
-            if (!gproji_leave_out(loop, n) && !gproji_release_safeguards(loop)) return GPROJ_STALLED;
+            if (!gproji_leave_out(loop, n) && !gproji_let_safeguards_yield(loop)) return GPROJ_STALLED;
             continue;
         }
         gproji_adapt_stiffness(loop);
@@ -11681,7 +11725,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (better || gproji_wishes_are_on(s)) loop->waited = -1; /* progress, or none to be judged yet */
         if (++loop->waited == 0) loop->best = loop->standing;
         if (loop->waited >= (loop->stiff ? GPROJI_PATIENCE_STIFF : GPROJI_PATIENCE) && !gproji_holds(loop) &&
-            !gproji_release_safeguards(loop))
+            !gproji_let_safeguards_yield(loop))
             return GPROJ_STALLED;
     }
     return s->error.code != GPROJ_OK ? GPROJ_FAILED : gproji_holds(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
@@ -12207,7 +12251,10 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->iterations = iterations;
     loop->time.frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
-    loop->best.residual = loop->best.merit = loop->fallen = HUGE_VAL;
+    loop->watch.yield_at = INT32_MAX;
+    if (iterations > GPROJI_SAFE_LEAST)
+        loop->watch.yield_at = gproji_min(iterations / 2 + iterations % 2, GPROJI_SAFE_LEAST);
+    loop->best.residual = loop->best.merit = loop->watch.fallen = HUGE_VAL;
     loop->result.spoiled.element = -1;
     loop->result.attempts = 1;
     gproji_error_clear(&refused);
@@ -12244,7 +12291,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     }
     if (!loop->begun) {
         s->progress.settling = 0;
-        s->creeping = false;
+        s->yield = GPROJI_YIELD_SLOWLY;
         if (nearest) {
             gproji_see_nearest(loop);
         } else {
@@ -12477,7 +12524,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
 GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_system *s, gproji_loop *loop) {
     gproji_passing passing;
     bool nearest, begun, ready = s->compiled && s->vector.sum;
-    int32_t i;
+    int32_t yield = (int32_t)s->yield, i;
     gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
@@ -12500,11 +12547,15 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_bool(stream, &loop->minimum);
     gproji_pass_bool(stream, &loop->options.smooth);
     gproji_pass_bool(stream, &loop->stiff);
-    gproji_pass_integer(stream, &loop->wary, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->trust.wary, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
-    gproji_pass_bool(stream, &s->creeping);
-    gproji_pass_double(stream, &loop->fallen, 0, HUGE_VAL);
-    gproji_pass_integer(stream, &loop->fall_seen, 0, INT32_MAX / 2);
+    gproji_pass_bool(stream, &loop->trust.restless);
+    gproji_pass_double(stream, &loop->trust.left, 0, HUGE_VAL);
+    yield = gproji_pass_integer(stream, &yield, GPROJI_YIELD_SLOWLY, GPROJI_YIELD_LAST);
+    if (stream->mode == GPROJI_READ) s->yield = (gproji_yielding)yield;
+    gproji_pass_double(stream, &loop->watch.fallen, 0, HUGE_VAL);
+    gproji_pass_integer(stream, &loop->watch.seen, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
     gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
@@ -12527,7 +12578,7 @@ static const double gproji_touch = 1e-6; /* bounds so near to their limit stay t
 /* Compiles the system for projections of `sides` columns at once. */
 GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     memset(&s->progress, 0, sizeof s->progress);
-    s->creeping = false;
+    s->yield = GPROJI_YIELD_SLOWLY;
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
@@ -19822,6 +19873,7 @@ typedef struct gproji_gliding {
     const gproj_curve *curve; /* the caller's; NULL: the part's, and: */
     int32_t *curve_of;        /* per vertex: one of the part's curves; -1: it stays */
     int32_t *segment;         /* per vertex: the segment it glides on; -1: to be found */
+    int32_t *pinned;          /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
 } gproji_gliding;
 
 GPROJI_INTERNAL gproji_gliding *gproji_gliding_of(const gproji_part *part) { return (gproji_gliding *)part->data; }
@@ -19837,32 +19889,29 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
                                             const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     gproji_gliding *gliding = gproji_gliding_of(part);
-    int32_t *segment = gliding->segment;
     bool settled = progress->settling >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
-        const double *tangent;
+        int32_t segment = gliding->segment[i], pinned = -1;
         double p[3], end[3];
-        bool after, before;
         if (!curve) continue;
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
         if (gliding->curve) gproji_from_internal(part->form, p, p);
         /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
            between two segments for ever. */
-        if (segment[i] < 0) {
-            segment[i] = gproj_curve_closest(curve, p).segment;
-        } else if (!settled) {
-            segment[i] = gproji_walk(curve, segment[i], p);
-        } else if (gproji_own_weight(gproji_group_at(system, group), 3 * i + 2) > 0) {
-            continue;
-        }
-        after = gproji_along(curve, segment[i], p, true) > 0;
-        before = gproji_along(curve, segment[i], p, false) < 0;
-        tangent = curve->tangent + 3 * (size_t)segment[i];
-        gproji_copy3(curve->point + 3 * ((size_t)segment[i] + after), end);
+        if (segment < 0)
+            segment = gproj_curve_closest(curve, p).segment;
+        else if (settled)
+            pinned = gliding->pinned[i];
+        else
+            segment = gproji_walk(curve, segment, p);
+        if (pinned < 0 && gproji_along(curve, segment, p, false) < 0) pinned = 0;
+        if (pinned < 0 && gproji_along(curve, segment, p, true) > 0) pinned = 1;
+        if (!progress->trial) gliding->segment[i] = segment, gliding->pinned[i] = pinned;
+        gproji_copy3(curve->point + 3 * ((size_t)segment + (pinned == 1)), end);
         if (gliding->curve) gproji_to_internal(part->form, end, end);
-        gproji_set_gliding(system, group, 3 * i, tangent, end, after || before);
+        gproji_set_gliding(system, group, 3 * i, curve->tangent + 3 * (size_t)segment, end, pinned >= 0);
     }
 }
 
@@ -19871,18 +19920,20 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     int32_t i;
     for (i = 0; i < part->count; ++i) {
         if (!gproji_curve_at(part, i)) continue;
-        gproji_gliding_of(part)->segment[i] = -1;
+        gproji_gliding_of(part)->segment[i] = gproji_gliding_of(part)->pinned[i] = -1;
         gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
 }
 
-/* Passes segments, and t1, from which that of the next solve turns; during a solve it is among the rows' numbers. */
+/* Passes segments and ends, and t1, from which that of the next solve turns; during a solve it is among the rows'
+   numbers. */
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     int32_t i, k, count;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
         gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        gproji_pass_integer(stream, &gproji_gliding_of(part)->pinned[i], -1, 1);
         for (k = 0; k < 3 && curve && !passing; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
     }
 }
@@ -19900,7 +19951,8 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
     if (!gliding) return NULL;
     part->data = gliding;
     gliding->segment = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->segment);
-    return gliding->segment ? gliding : NULL;
+    gliding->pinned = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->pinned);
+    return gliding->segment && gliding->pinned ? gliding : NULL;
 }
 
 /* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
@@ -19912,7 +19964,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        gproji_gliding_of(part)->segment[i] = -1;
+        gproji_gliding_of(part)->segment[i] = gproji_gliding_of(part)->pinned[i] = -1;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
         if (gproji_form_ready(form))
@@ -22725,8 +22777,10 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
 
    A row asks for no more than its corner or edge has when it is linearised, or a floor: they may shrink as far as they
    must, but slowly, and a wish for more does not hold up the constraints. Many rows that must shrink still do: where the
-   constraints creep (gproji_creeps) all ask for their floors only. Far from the end that would be too early, for shapes
-   lose more there than they must.
+   constraints creep all ask for their floors only. Far from the end that would be too early, for shapes lose more there
+   than they must. Where equilibrium alone cannot hold with that, they ask for the least before they are let go: faces
+   that are not turned over, nor so concave that their sides cross. With planar faces it is better to let them go at
+   once: of 36 twisted patches 24 end whole so, and 20 with that stage (test_smooth).
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22737,6 +22791,7 @@ static const double gproji_corner_least = 0.2;   /* and that below which it gets
 static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
 static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
+static const double gproji_corner_last = -0.2, gproji_corner_upright_last = 0.01; /* asked of all at last */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
 static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
 static const double gproji_edge_floor = 0.15;  /* asked of shorter edges */
@@ -22790,7 +22845,8 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     const gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     int32_t edge = item - guard->edges, h = item / 2, k, t;
-    bool upright = item % 2 != 0, creeps = gproji_creeps(part->form->system);
+    bool upright = item % 2 != 0;
+    gproji_yielding yield = gproji_yield_of(part->form->system);
     double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
     if (edge >= 0) {
         double length = guard->length[edge], asked = gproji_edge_floor;
@@ -22799,7 +22855,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
             term[3 * k + 2].a = -2 / (length * length);
         }
         has = gproji_edge_length(mesh, x, edge) / length;
-        if (!creeps) asked = gproji_fmax(gproji_fmin(has, gproji_corner_wanted), asked);
+        if (yield == GPROJI_YIELD_SLOWLY) asked = gproji_fmax(gproji_fmin(has, gproji_corner_wanted), asked);
         return asked * asked;
     }
     gproji_corner_normal(part->form, x, x, mesh->face[h], m);
@@ -22811,7 +22867,8 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
             term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
         }
-    if (creeps) return least;
+    if (yield == GPROJI_YIELD_LAST) return upright ? gproji_corner_upright_last : gproji_corner_last;
+    if (yield == GPROJI_YIELD_FLOOR) return least;
     return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), least);
 }
 
@@ -23170,6 +23227,85 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
     return most;
 }
 
+/* Two planes through one line meet along it only. So where the boundary is held along a line, all faces beside it share
+   one plane (or lose their inner edges), and with a corner at each end of the line also the sides that go on there. */
+
+static const double gproji_side_turn = 1e-6; /* sine of the turn at a vertex that is on a straight side */
+static const double gproji_side_bend = 1e-3; /* mean edges; turns of that sine cannot explain so much */
+
+/* Writes the point that boundary vertex v keeps: prescribed, or the original one of a vertex that glides along a straight
+   side, which stands for all on that side. False: v may go elsewhere. */
+GPROJI_INTERNAL bool gproji_kept_point(const gproj_form *form, const double *held, const double *value, int32_t v,
+                                       double out[3]) {
+    const double *h = held + 3 * (size_t)v;
+    bool all = h[0] + h[1] + h[2] == 3;
+    gproji_copy3((all ? value : form->original) + 3 * (size_t)v, out);
+    return all || gproji_rule_is_on(form, &gproji_gliding_boundary_rule);
+}
+
+/* Is the boundary straight where half-edge h begins, with three edges there? */
+GPROJI_INTERNAL bool gproji_is_straight(const gproj_form *form, const double *held, const double *value, int32_t h) {
+    const gproj_mesh *mesh = form->mesh;
+    double point[3][3], a[3], b[3], turn[3];
+    int32_t vertex[3] = {mesh->origin[mesh->prev[h]], mesh->origin[h], mesh->origin[mesh->next[h]]}, ring[4], k;
+    if (gproj_mesh_one_ring(mesh, vertex[1], ring, 4) != 3) return false;
+    for (k = 0; k < 3; ++k)
+        if (!gproji_kept_point(form, held, value, vertex[k], point[k])) return false;
+    gproji_sub3(point[1], point[0], a);
+    gproji_sub3(point[2], point[1], b);
+    gproji_cross3(a, b, turn);
+    return gproji_dot3(a, b) > 0 && gproji_length3(turn) <= gproji_side_turn * gproji_length3(a) * gproji_length3(b);
+}
+
+/* How far the sides before and after a straight one are from a common plane with it. The straight one begins with
+   boundary half-edge h, *end becomes the last vertex. 0: it is not straight, or nothing is known of the sides beside. */
+GPROJI_INTERNAL double gproji_side_bends(const gproj_form *form, const double *held, const double *value, int32_t h,
+                                         int32_t *end) {
+    static const double none[3] = {0, 0, 0};
+    const gproj_mesh *mesh = form->mesh;
+    double point[4][3], side[2][3], axis[3], normal[3];
+    int32_t vertex[4], e = mesh->next[h], ring[4], k;
+    for (; e != h && gproji_is_straight(form, held, value, e); e = mesh->next[e]) continue;
+    vertex[0] = mesh->origin[mesh->prev[h]], vertex[1] = mesh->origin[h];
+    vertex[2] = *end = mesh->origin[e], vertex[3] = mesh->origin[mesh->next[e]];
+    if (e == mesh->next[h] || e == h) return 0;
+    for (k = 0; k < 4; ++k) {
+        const double *fixed = held + 3 * (size_t)vertex[k];
+        bool corner = k == 1 || k == 2, all = fixed[0] + fixed[1] + fixed[2] == 3;
+        if (!gproji_kept_point(form, held, value, vertex[k], point[k])) return 0;
+        if (corner && (!all || gproj_mesh_one_ring(mesh, vertex[k], ring, 4) != 2)) return 0;
+        if (!corner && !all && !gproji_is_straight(form, held, value, k == 0 ? mesh->prev[h] : mesh->next[e])) return 0;
+    }
+    gproji_sub3(point[2], point[1], axis);
+    gproji_sub3(point[0], point[1], side[0]);
+    gproji_sub3(point[3], point[2], side[1]);
+    gproji_cross3(axis, side[0], normal);
+    if (!gproji_normalise3(normal, none)) return 0;
+    return fabs(gproji_dot3(normal, side[1]));
+}
+
+/* Names a straight side of the boundary that keeps the faces beside it from being flat. */
+GPROJI_INTERNAL void gproji_tell_straight_side(const gproj_form *form, const double *held, const double *value,
+                                               gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
+    size_t length = strlen(result->message);
+    double worst = 0;
+    int32_t h, first = -1, last = -1, sides = 0;
+    for (h = 0; h < mesh->halfedge_count; ++h) {
+        double bend;
+        int32_t end;
+        if (mesh->face[h] >= 0 || gproji_is_straight(form, held, value, h)) continue;
+        bend = gproji_side_bends(form, held, value, h, &end);
+        sides += bend > gproji_side_bend;
+        if (bend > worst) worst = bend, first = mesh->origin[h], last = end;
+    }
+    if (sides == 0) return;
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; flat faces along the straight side from vertex %d to %d share one plane, but the next sides are %g "
+                  "mean edges off it%s: bend it, or let one of the two go",
+                  first, last, worst, sides > 1 ? ", and others likewise" : "");
+}
+
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
    would not explain it. */
 GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
@@ -23193,6 +23329,8 @@ GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
     else if (all == form->mesh->vertex_count)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
+    else if (gproji_is_on(form, form->planarity))
+        gproji_tell_straight_side(form, held, value, result);
 }
 
 /* A vertex of a part of the mesh that has loads and no support; -1: none. */
@@ -23700,7 +23838,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
-    if (smooth && gproji_is_on(form, form->planarity)) hooks->settle = gproji_settle_form;
+    hooks->least = !gproji_is_on(form, form->planarity);
+    if (smooth) hooks->settle = gproji_settle_form; /* without local unknowns, too: steps are judged by their ends then */
     if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
         hooks->inspect = gproji_inspect_corners;
         hooks->wake = gproji_wake_corners;
@@ -23722,6 +23861,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
+    if (result->outcome == GPROJ_CONVERGED && result->spoiled.total > 0) gproji_tell_held(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
@@ -23900,7 +24040,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstG", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstH", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
@@ -24043,7 +24183,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'G'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'H'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

@@ -29,12 +29,17 @@ double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, doub
     return gproji_volume(mesh, position, height, gradient, NULL);
 }
 
-void gprojt_inside_watch(gproj_form *form, bool set, double watched[3]) {
+void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]) {
     gproji_loop *loop = &form->solve.loop;
     if (set) {
-        form->system->creeping = watched[0] > 0;
-        loop->fallen = watched[1], loop->fall_seen = (int32_t)watched[2];
+        form->system->yield = (gproji_yielding)(int)watched[0];
+        loop->watch.fallen = watched[1], loop->watch.seen = (int32_t)watched[2];
+        loop->watch.yield_at = (int32_t)watched[3];
+        loop->trust.restless = watched[4] > 0, loop->trust.left = watched[5];
     } else {
-        watched[0] = form->system->creeping, watched[1] = loop->fallen, watched[2] = loop->fall_seen;
+        watched[0] = form->system->yield;
+        watched[1] = loop->watch.fallen, watched[2] = loop->watch.seen;
+        watched[3] = loop->watch.yield_at;
+        watched[4] = loop->trust.restless, watched[5] = loop->trust.left;
     }
 }

@@ -26,9 +26,10 @@ double gprojt_inside_row_weight(const gproj_form *form, int32_t group, int32_t r
 /* Is a group the solver's own, a safeguard or a metric, which is in no residual? */
 bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group);
 
-/* How a solve's fall has been watched: 0 or 1 for whether it creeps, the residual when it was looked at, the iterations
-   then. Written to the form if `set`, else read from it. */
-void gprojt_inside_watch(gproj_form *form, bool set, double watched[3]);
+/* How a solve has been watched: how far safeguards yield (0 to 2), the residual when its fall was looked at, the iterations
+   then, those after which safeguards yield further, 1 if a step has failed while the metric rested, the part of the merit
+   that the last step has left. Written to the form if `set`, else read from it. */
+void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]);
 
 /* Is end a of an attempt better than b? */
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);

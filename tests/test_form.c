@@ -1060,6 +1060,55 @@ GPROJT_TEST(faces_held_bent_are_named) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A grid of n x n squares over the unit square. */
+static gproj_mesh *gprojt_graph(int n, double (*height)(double x, double y)) {
+    gprojt_soup soup;
+    int i, j;
+    memset(&soup, 0, sizeof soup);
+    for (j = 0; j <= n; ++j)
+        for (i = 0; i <= n; ++i) gprojt_add_vertex(&soup, (double)i / n, (double)j / n, height((double)i / n, (double)j / n));
+    for (j = 0; j < n; ++j)
+        for (i = 0; i < n; ++i) {
+            int32_t v = j * (n + 1) + i, face[4] = {v, v + 1, v + n + 2, v + n + 1};
+            gprojt_add_face(&soup, 4, face);
+        }
+    return gprojt_mesh_of(soup);
+}
+
+static double gprojt_saddle(double x, double y) { return x * y; }
+static double gprojt_bump(double x, double y) { return 4 * x * x * (1 - x) * y * (1 - y) * (1 - y); }
+static double gprojt_arched(double x, double y) { return x * y + 0.3 * (x * (1 - x) + y * (1 - y)); }
+
+/* Flat faces along a straight side share one plane: sides that are askew at the ends of one leave none, whether the
+   boundary is fixed or glides. Sides in one plane, curved ones, and one that ends at a free vertex are not named. */
+GPROJT_TEST(straight_sides_are_named) {
+    static double (*const height[3])(double, double) = {gprojt_saddle, gprojt_bump, gprojt_arched};
+    static const int32_t side[5] = {0, 1, 2, 3, 4}, next[5] = {0, 5, 10, 15, 20}, after[5] = {4, 9, 14, 19, 24};
+    int k, glides;
+    for (k = 0; k < 4; ++k)
+        for (glides = 0; glides < 2; ++glides) {
+            gproj_mesh *mesh = gprojt_graph(4, height[k % 3]);
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_result result;
+            gproj_add_planarity(form, 1);
+            if (k == 3) { /* a side and the ones beside it, without a corner */
+                gproj_add_fixed(form, 4, side, 1);
+                gproj_add_fixed(form, 5, next, 1);
+                gproj_add_fixed(form, 4, after + 1, 1);
+            } else if (glides) {
+                gproj_add_gliding_boundary(form, 1);
+            } else {
+                gproj_add_fixed_boundary(form, 1);
+            }
+            result = gproj_solve(form, 20, NULL);
+            if (k == 0) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
+            GPROJT_CHECK(!strstr(result.message, "flat faces along the straight side from vertex ") == (k > 0));
+            if (k == 0) GPROJT_CHECK(strstr(result.message, "and others likewise") != NULL);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 /* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
    bent more is named. */
 GPROJT_TEST(triangles_held_are_not_named) {
@@ -2353,6 +2402,7 @@ int main(void) {
     GPROJT_RUN(gauss_planes_turn_with_the_faces);
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
+    GPROJT_RUN(straight_sides_are_named);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);

@@ -297,10 +297,10 @@ GPROJT_TEST(frames_and_states) {
     GPROJT_CHECK(most > 3);
 }
 
-/* States know whether a solve creeps, and when its fall was looked at last. */
+/* States know how far safeguards yield and when they will further, when the fall was looked at last, how steps went. */
 GPROJT_TEST(creeping_is_saved) {
     gproj_solve_options options = gprojt_smooth();
-    double saved[3] = {1, 0.25, 5}, restored[3] = {0, 0, 0};
+    double saved[6] = {2, 0.25, 5, 37, 1, 0.75}, restored[6] = {0, 0, 0, 0, 0, 0};
     uint8_t *state = NULL;
     size_t size = 0;
     int k, i;
@@ -322,7 +322,7 @@ GPROJT_TEST(creeping_is_saved) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
-    for (i = 0; i < 3; ++i) GPROJT_CHECK(fabs(restored[i] - saved[i]) < 1e-12);
+    for (i = 0; i < 6; ++i) GPROJT_CHECK(fabs(restored[i] - saved[i]) < 1e-12);
     free(state);
 }
 

@@ -874,7 +874,7 @@ static void gprojt_check_unbalanced(const gproj_mesh *mesh, const gproj_result *
         GPROJT_CHECK(!gprojt_listed(pins.item, pins.count, vertex[k]));
         for (v = 3 * vertex[k]; v < 3 * vertex[k] + 3; ++v) off[k] = fmax(off[k], fabs(sum[v]));
     }
-    GPROJT_CHECK(off[0] <= off[1] && off[1] <= off[2]);
+    GPROJT_CHECK(off[0] <= off[1] * (1 + 1e-9) && off[1] <= off[2] * (1 + 1e-9));
     for (v = 0; v < 3 * mesh->vertex_count; ++v)
         if (!gprojt_listed(pins.item, pins.count, v / 3) && v / 3 != vertex[1] && v / 3 != vertex[2])
             GPROJT_CHECK(fabs(sum[v]) <= off[0] * (1 + 1e-9));
