@@ -2446,17 +2446,22 @@ GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_c
 }
 
 /* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
-   O(n). False when there is no memory; the array is then unchanged. */
-GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+   O(n). Returns the array; without memory that is the old one, and *capacity stays below `needed`. */
+GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capacity, size_t needed, size_t size) {
     size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
     void *moved;
-    if (needed <= *capacity) return true;
+    if (needed <= *capacity) return block;
     if (wanted < needed) wanted = needed;
-    moved = gproji_retake(heap, *block, *block ? *capacity : 0, wanted, size);
-    if (!moved) return false;
-    *block = moved;
+    moved = gproji_retake(heap, block, block ? *capacity : 0, wanted, size);
+    if (!moved) return block;
     *capacity = wanted;
-    return true;
+    return moved;
+}
+
+/* Grows *block; false when there is no memory. */
+GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
+    *block = gproji_grow(heap, *block, capacity, needed, size);
+    return needed <= *capacity;
 }
 
 /* A growing array of integers; zeros at first. */
@@ -2467,10 +2472,9 @@ typedef struct gproji_ints {
 
 /* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
-    void *block = ints->data;
     if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
-    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
-    ints->data = (int32_t *)block;
+    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
+    if (ints->count >= ints->capacity) return false;
     ints->data[ints->count++] = value;
     return true;
 }
@@ -2510,50 +2514,52 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. */
-enum {
-    GPROJI_POOL_BLOCKS = 48 /* more than any takes */
-};
+/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. Each block
+   has a link in front, which must not spoil the alignment of doubles. */
+typedef struct gproji_link {
+    struct gproji_link *before; /* the block taken before this one, or NULL */
+    size_t bytes;
+} gproji_link;
+
 typedef struct gproji_pool {
     gproji_heap *heap;
+    gproji_link *last;
     bool failed; /* some block could not be taken */
-    int32_t count;
-    void *block[GPROJI_POOL_BLOCKS];
-    size_t bytes[GPROJI_POOL_BLOCKS];
 } gproji_pool;
 
 GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->heap = heap;
+    pool->last = NULL;
     pool->failed = false;
-    pool->count = 0;
 }
 
 GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
-    while (pool->count > 0) {
-        pool->count--;
-        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
+    while (pool->last) {
+        gproji_link *link = pool->last;
+        pool->last = link->before;
+        gproji_give(pool->heap, link, link->bytes, 1);
     }
     pool->failed = false;
 }
 
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
-    size_t bytes = possible ? gproji_bytes((size_t)count, size) : SIZE_MAX; /* which is refused */
-    void *block = gproji_take(pool->heap, bytes, 1);
-    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (!block) {
+    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 4 / size;
+    size_t bytes = possible ? sizeof(gproji_link) + (size_t)count * size : SIZE_MAX; /* which is refused */
+    gproji_link *link = (gproji_link *)gproji_take(pool->heap, bytes, 1);
+    if (!link) {
         pool->failed = true;
         return NULL;
     }
-    pool->block[pool->count] = block;
-    pool->bytes[pool->count++] = bytes;
-    return block;
+    link->before = pool->last;
+    link->bytes = bytes;
+    pool->last = link;
+    return link + 1;
 }
 
 GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
-    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    if (block) memset(block, 0, (size_t)count * size);
     return block;
 }
 
@@ -2570,13 +2576,12 @@ GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, 
 
 /* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
-    int32_t last = pool->count - 1;
-    size_t bytes = gproji_bytes((size_t)count, size);
-    void *moved = gproji_retake(pool->heap, pool->block[last], pool->bytes[last], bytes, 1);
+    size_t bytes = sizeof(gproji_link) + (size_t)count * size;
+    gproji_link *moved = (gproji_link *)gproji_retake(pool->heap, pool->last, pool->last->bytes, bytes, 1);
     if (!moved) return NULL;
-    pool->block[last] = moved;
-    pool->bytes[last] = bytes;
-    return moved;
+    moved->bytes = bytes;
+    pool->last = moved;
+    return moved + 1;
 }
 
 /* ============================================================================================================
@@ -4928,6 +4933,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band *band = &nd->band;
     int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
     int64_t arcs = 0, units = 0, n;
+    size_t bytes;
     /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below, next to nodes above, belong to it. */
     for (i = 0; i < nd->nodes; ++i) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4949,11 +4955,10 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     if (arcs > INT32_MAX || units > INT32_MAX) return false;
     /* 2. Lay the arrays out in one block, which serves all bands. */
     n = count;
-    if (!gproji_reserve(nd->heap, &band->block, &band->block_size,
-                        (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
-        nd->failed = true;
-        return false;
-    }
+    bytes = (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n;
+    band->block = gproji_grow(nd->heap, band->block, &band->block_size, bytes, 1);
+    nd->failed = nd->failed || band->block_size < bytes;
+    if (nd->failed) return false;
     at = (int32_t *)band->block;
     band->id = at, at += n;
     band->start = at, at += n + 1;
@@ -7781,6 +7786,17 @@ typedef struct gproji_tallies {
     int32_t first_task; /* in the evaluation under way */
 } gproji_tallies;
 
+/* How far steps may go beyond a guard's rows. */
+typedef struct gproji_guarding {
+    double slack;        /* steps may violate its rows by so much */
+    int32_t activations; /* how often dormant rows were activated */
+} gproji_guarding;
+
+/* Entries that a group's `row`, `term`, `share` and `local.variable` have room for. */
+typedef struct gproji_group_room {
+    size_t row, term, share, local;
+} gproji_group_room;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7795,10 +7811,7 @@ typedef struct gproji_group {
                         at the other nodes, as n'(v_i - v_j) does around a face */
     bool has_wide;    /* some rows are dense */
     gproji_role role;
-    struct {
-        double slack;        /* steps may violate its rows by so much */
-        int32_t activations; /* how often dormant rows were activated */
-    } guard;
+    gproji_guarding guard;
 
     int32_t row_count;
     gproji_row *row;
@@ -7807,9 +7820,7 @@ typedef struct gproji_group {
     size_t term_count; /* all terms; compiled, with the copies behind the first `sources` */
     size_t sources;
     gproji_share *share; /* rows; NULL: all factors are 1 */
-    struct {
-        size_t row, term, share, local;
-    } capacity; /* entries that `row`, `term`, `share`, `local_variable` have room for */
+    gproji_group_room capacity;
 
     gproji_locals local;
     gproji_tallies tally;
@@ -7876,8 +7887,7 @@ typedef struct gproji_schur {
 typedef struct gproji_front_rows {
     int64_t *start;       /* the rows for front f are row[start[f] .. start[f + 1] - 1] */
     gproji_row_name *row; /* all narrow rows */
-    size_t count;         /* fronts */
-    size_t row_count, row_room;
+    int64_t row_count;
 } gproji_front_rows;
 
 /* Work arrays for steps with dense rows. */
@@ -7885,29 +7895,23 @@ typedef struct gproji_wide {
     double *matrix;             /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
     double *vector;             /* wide_count */
     double *residual, *balance; /* in refinement; NULL without dense rows */
-    size_t taken;               /* wide_count when these and `sides` were taken */
     int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
 } gproji_wide;
 
-/* Blocks of variables; lists by variable. */
+/* Blocks of variables, and local numbers while a row is added; lists by variable. */
 typedef struct gproji_blocks {
     int32_t *first;     /* the first variable in the same block */
     uint8_t *joined;    /* of a first one: has a narrow row several variables in its block? */
     uint8_t *auxiliary; /* local unknown, eliminated within an element and not regularised? */
+    int32_t *place;     /* local number of a variable that the row has named, else -1; set up for the first `places` */
+    int32_t places;
 } gproji_blocks;
-
-/* Local numbers while a row is added. */
-typedef struct gproji_naming {
-    int32_t *place; /* the first `count` variables: local number; else -1 */
-    int32_t count;
-} gproji_naming;
 
 /* Nodes of the adjacency graph, once compiled. */
 typedef struct gproji_nodes {
     int32_t count;
-    int32_t *of;       /* variables: node */
-    int32_t *first;    /* count + 1 (taken: variables + 1): first variable in each node, and the end */
-    int32_t variables; /* variable_count when this and the system's vectors were taken */
+    int32_t *of;    /* variables: node */
+    int32_t *first; /* count + 1 (taken: variables + 1): first variable in each node, and the end */
 } gproji_nodes;
 
 /* Vectors of a step, a number for each variable. */
@@ -7919,11 +7923,10 @@ typedef struct gproji_vectors {
     double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
 } gproji_vectors;
 
-/* Rows in bounds that a step may violate. */
-typedef struct gproji_hinges {
-    gproji_hinge *list;
-    size_t taken; /* rows in all bounds */
-} gproji_hinges;
+/* Entries that a system's growing arrays have room for. */
+typedef struct gproji_room {
+    size_t x, block, place, joined, auxiliary, group;
+} gproji_room;
 
 struct gproj_system {
     gproji_heap own;
@@ -7938,23 +7941,21 @@ struct gproj_system {
     double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
-    gproji_naming naming;
     gproji_group *group;
     int32_t group_count;
-    struct {
-        size_t x, block, place, joined, auxiliary, group;
-    } capacity; /* entries that these arrays have room for */
+    gproji_room capacity;
 
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
-    bool evaluated; /* compiled, and the rows have had values and gradients since */
+    bool evaluated;    /* compiled, and the rows have had values and gradients since */
+    gproji_pool taken; /* holds all that compilation took, but for schur's */
     gproji_nodes nodes;
     gproji_front_rows fronts;
     gproji_vectors vector;
     int32_t wide_count;
     gproji_wide wide;
-    gproji_hinges hinges;
+    gproji_hinge *hinges; /* rows in bounds that a step may violate */
     gproji_schur schur;
 };
 
@@ -7964,6 +7965,7 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system));
     if (!s) return NULL;
     gproji_error_clear(&s->error);
+    gproji_pool_start(&s->taken, &s->own);
     gproji_pool_start(&s->schur.pool, &s->own);
     if (host) s->host = *host;
     s->cholesky = gproj_cholesky_create(host);
@@ -8040,39 +8042,21 @@ GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
 
 /* Ends the compiled state and gives back all memory that compilation took. */
 GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
-    size_t n = (size_t)s->nodes.variables;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         if (g->local.sorted) gproji_unsort_locals(g);
-        gproji_give(&s->own, g->local.gradient, gproji_local_count(g), sizeof *g->local.gradient);
-        gproji_give(&s->own, g->local.at, gproji_local_count(g), sizeof *g->local.at);
-        gproji_give(&s->own, g->tally.part, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        gproji_give(&s->own, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
         g->local.gradient = NULL;
         g->local.at = NULL;
         g->tally.part = NULL;
         g->multiplier = NULL;
     }
-    gproji_give(&s->own, s->nodes.of, n, sizeof *s->nodes.of);
-    gproji_give(&s->own, s->nodes.first, n + 1, sizeof *s->nodes.first);
-    gproji_give(&s->own, s->fronts.start, s->fronts.count + 2, sizeof *s->fronts.start);
-    gproji_give(&s->own, s->fronts.row, s->fronts.row_room, sizeof *s->fronts.row);
-    gproji_give(&s->own, s->vector.gradient, n, sizeof *s->vector.gradient);
-    gproji_give(&s->own, s->vector.saved, n, sizeof *s->vector.saved);
-    gproji_give(&s->own, s->vector.sum, n, sizeof *s->vector.sum);
-    gproji_give(&s->own, s->vector.sides, (s->wide.taken + 1) * n, sizeof *s->vector.sides);
-    gproji_give(&s->own, s->wide.matrix, s->wide.taken * s->wide.taken, sizeof *s->wide.matrix);
-    gproji_give(&s->own, s->wide.vector, s->wide.taken, sizeof *s->wide.vector);
-    gproji_give(&s->own, s->wide.residual, n, sizeof *s->wide.residual);
-    gproji_give(&s->own, s->wide.balance, n, sizeof *s->wide.balance);
-    gproji_give(&s->own, s->hinges.list, s->hinges.taken, sizeof *s->hinges.list);
-    s->nodes.of = s->nodes.first = NULL;
+    memset(&s->nodes, 0, sizeof s->nodes);
     memset(&s->fronts, 0, sizeof s->fronts);
     memset(&s->wide, 0, sizeof s->wide);
-    s->vector.gradient = s->vector.step = s->vector.saved = s->vector.sum = s->vector.sides = NULL;
-    s->hinges.list = NULL;
-    s->hinges.taken = 0;
+    memset(&s->vector, 0, sizeof s->vector);
+    s->hinges = NULL;
+    gproji_pool_give_all(&s->taken);
     gproji_schur_forget(s);
     s->compiled = s->evaluated = false;
 }
@@ -8091,7 +8075,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_give(&s->own, s->group, s->capacity.group, sizeof *s->group);
     gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
     gproji_give(&s->own, s->blocks.first, s->capacity.block, sizeof *s->blocks.first);
-    gproji_give(&s->own, s->naming.place, s->capacity.place, sizeof *s->naming.place);
+    gproji_give(&s->own, s->blocks.place, s->capacity.place, sizeof *s->blocks.place);
     gproji_give(&s->own, s->blocks.joined, s->capacity.joined, sizeof *s->blocks.joined);
     gproji_give(&s->own, s->blocks.auxiliary, s->capacity.auxiliary, sizeof *s->blocks.auxiliary);
     gproj_cholesky_destroy(s->cholesky);
@@ -8128,19 +8112,15 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 /* Makes room for `count` further variables. */
 GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->blocks.first, *place = s->naming.place, *joined = s->blocks.joined,
-         *auxiliary = s->blocks.auxiliary;
-    bool enough = gproji_reserve(&s->own, &x, &s->capacity.x, wanted, sizeof *s->x);
-    s->x = (double *)x;
-    enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->blocks.first);
-    s->blocks.first = (int32_t *)block;
-    enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->naming.place);
-    s->naming.place = (int32_t *)place;
-    enough = enough && gproji_reserve(&s->own, &joined, &s->capacity.joined, wanted, sizeof *s->blocks.joined);
-    s->blocks.joined = (uint8_t *)joined;
-    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->blocks.auxiliary);
-    s->blocks.auxiliary = (uint8_t *)auxiliary;
-    return enough;
+    gproji_blocks *b = &s->blocks;
+    gproji_room *room = &s->capacity;
+    s->x = (double *)gproji_grow(&s->own, s->x, &room->x, wanted, sizeof *s->x);
+    b->first = (int32_t *)gproji_grow(&s->own, b->first, &room->block, wanted, sizeof *b->first);
+    b->place = (int32_t *)gproji_grow(&s->own, b->place, &room->place, wanted, sizeof *b->place);
+    b->joined = (uint8_t *)gproji_grow(&s->own, b->joined, &room->joined, wanted, sizeof *b->joined);
+    b->auxiliary = (uint8_t *)gproji_grow(&s->own, b->auxiliary, &room->auxiliary, wanted, sizeof *b->auxiliary);
+    return room->x >= wanted && room->block >= wanted && room->place >= wanted && room->joined >= wanted &&
+           room->auxiliary >= wanted;
 }
 
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
@@ -8210,18 +8190,9 @@ GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *nam
         name, schedule.weight, schedule.decay, schedule.last);
 }
 
-/* Cuts names that are too long. */
-GPROJI_INTERNAL void gproji_set_group_name(gproji_group *g, const char *name) {
-    size_t length = strlen(name);
-    if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
-    memset(g->name, 0, sizeof g->name);
-    memcpy(g->name, name, length);
-}
-
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
     gproji_group *g;
-    void *groups, *rows = NULL;
-    bool enough;
+    size_t count, length;
     if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
@@ -8231,19 +8202,20 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         gproji_fail_schedule(s, group->name, group->schedule);
         return -1;
     }
-    groups = s->group;
-    enough = gproji_reserve(&s->own, &groups, &s->capacity.group, (size_t)s->group_count + 1, sizeof *s->group);
-    s->group = (gproji_group *)groups;
-    g = enough ? &s->group[s->group_count] : NULL;
-    if (g) memset(g, 0, sizeof *g);
-    /* An empty group has one entry, at which locals end. */
-    if (!g || !gproji_reserve(&s->own, &rows, &g->capacity.row, 1, sizeof *g->row)) {
+    count = (size_t)s->group_count;
+    s->group = (gproji_group *)gproji_grow(&s->own, s->group, &s->capacity.group, count + 1, sizeof *s->group);
+    g = count < s->capacity.group ? &s->group[count] : NULL;
+    if (g) {
+        memset(g, 0, sizeof *g);
+        g->row = (gproji_row *)gproji_grow(&s->own, NULL, &g->capacity.row, 1, sizeof *g->row);
+    }
+    if (!g || !g->row) {
         gproji_fail_memory(&s->error);
         return -1;
     }
-    g->row = (gproji_row *)rows;
-    memset(&g->row[0], 0, sizeof g->row[0]);
-    gproji_set_group_name(g, group->name);
+    memset(&g->row[0], 0, sizeof g->row[0]); /* at which the locals of an empty group end */
+    length = strlen(group->name);
+    memcpy(g->name, group->name, length < GPROJ_NAME_SIZE ? length : GPROJ_NAME_SIZE - 1); /* cuts longer names */
     g->kind = group->kind;
     g->place = group->place;
     g->global = group->global;
@@ -8367,32 +8339,16 @@ GPROJI_INTERNAL void gproji_refuse_terms(gproj_system *s, const gproji_group *g,
                 "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
 }
 
-/* Makes room for further rows, terms and locals. */
-GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
-    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
-    void *row = g->row, *term = g->term, *share = g->share, *local = g->local.variable;
-    bool enough = gproji_reserve(&s->own, &row, &g->capacity.row, wanted, sizeof *g->row);
-    g->row = (gproji_row *)row;
-    enough = enough && gproji_reserve(&s->own, &term, &g->capacity.term, g->term_count + terms, sizeof *g->term);
-    g->term = (gproj_term *)term;
-    enough = enough && gproji_reserve(&s->own, &local, &g->capacity.local, gproji_local_count(g) + locals,
-                                      sizeof *g->local.variable);
-    g->local.variable = (int32_t *)local;
-    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->capacity.share, wanted, sizeof *g->share));
-    g->share = (gproji_share *)share;
-    return enough;
-}
-
 /* Counts the variables that the terms name. */
 GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
     int32_t t, named = 0;
     for (t = 0; t < count; ++t) {
-        if (s->naming.place[terms[t].i] < 0) s->naming.place[terms[t].i] = named++;
-        if (terms[t].j >= 0 && s->naming.place[terms[t].j] < 0) s->naming.place[terms[t].j] = named++;
+        if (s->blocks.place[terms[t].i] < 0) s->blocks.place[terms[t].i] = named++;
+        if (terms[t].j >= 0 && s->blocks.place[terms[t].j] < 0) s->blocks.place[terms[t].j] = named++;
     }
     for (t = 0; t < count; ++t) {
-        s->naming.place[terms[t].i] = -1;
-        if (terms[t].j >= 0) s->naming.place[terms[t].j] = -1;
+        s->blocks.place[terms[t].i] = -1;
+        if (terms[t].j >= 0) s->blocks.place[terms[t].j] = -1;
     }
     return named;
 }
@@ -8416,10 +8372,18 @@ GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) 
 
 /* Makes this room, or fails. */
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
+    gproji_group_room *room = &g->capacity;
     if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
         locals > GPROJI_TERMS_MAX - gproji_local_count(g))
-        gproji_refuse_rows(s, g);
-    else if (!gproji_reserve_rows(s, g, rows, terms + 1, locals + 1)) /* also of a row without terms */
+        return gproji_refuse_rows(s, g);
+    terms += g->term_count, locals += gproji_local_count(g);
+    terms += terms == 0, locals += locals == 0; /* a row without terms has arrays, too */
+    g->row = (gproji_row *)gproji_grow(&s->own, g->row, &room->row, wanted, sizeof *g->row);
+    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &room->term, terms, sizeof *g->term);
+    g->local.variable = (int32_t *)gproji_grow(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+    if (g->share) g->share = (gproji_share *)gproji_grow(&s->own, g->share, &room->share, wanted, sizeof *g->share);
+    if (room->term < terms || room->local < locals || room->row < wanted || (g->share && room->share < wanted))
         gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
@@ -8472,7 +8436,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
-    for (; s->naming.count < s->variable_count; ++s->naming.count) s->naming.place[s->naming.count] = -1;
+    for (; s->blocks.places < s->variable_count; ++s->blocks.places) s->blocks.place[s->blocks.places] = -1;
     /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
     if (!gproji_has_room(g, 1, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, 1, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
@@ -8481,7 +8445,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     /* 3. Numbers the locals in the order in which terms name them. */
     local = g->local.variable + row->local;
     to = g->term + row->term;
-    for (place = s->naming.place, t = 0; t < count; ++t) {
+    for (place = s->blocks.place, t = 0; t < count; ++t) {
         int32_t p = terms[t].i, q = terms[t].j;
         if (place[p] < 0) local[named] = p, place[p] = named++;
         if (q >= 0 && place[q] < 0) local[named] = q, place[q] = named++;
@@ -8725,53 +8689,45 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* Gives back spare room in a growing array. */
-GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capacity, size_t count, size_t size) {
-    void *moved;
-    if (*capacity == count || !*block) return true;
-    moved = gproji_retake(heap, *block, *capacity, count, size);
-    if (!moved) return false;
-    *block = moved;
+/* Gives back spare room in a growing array. Returns the array; without memory that is the old one. */
+GPROJI_INTERNAL void *gproji_trim(gproji_heap *heap, void *block, size_t *capacity, size_t count, size_t size) {
+    void *moved = block && *capacity != count ? gproji_retake(heap, block, *capacity, count, size) : NULL;
+    if (!moved) return block;
     *capacity = count;
-    return true;
+    return moved;
 }
 
 /* Step 1: the variables of a joined block are a node. */
 GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
-    size_t n = (size_t)s->variable_count;
-    int32_t i, v;
-    bool done;
-    s->nodes.variables = s->variable_count;
-    s->nodes.of = (int32_t *)gproji_take(&s->own, n, sizeof *s->nodes.of);
-    s->nodes.first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->nodes.first);
-    done = s->nodes.of && s->nodes.first;
+    gproji_nodes *nodes = &s->nodes;
+    int32_t n = s->variable_count, i, v;
+    bool trimmed = true;
     /* Spare room is given back now, before the analysis needs much memory. */
-    for (i = 0; done && i < s->group_count; ++i) {
+    for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
-        void *row = g->row, *term = g->term, *local = g->local.variable;
-        done = gproji_trim(&s->own, &row, &g->capacity.row, rows, sizeof *g->row);
-        g->row = (gproji_row *)row;
-        done = done && gproji_trim(&s->own, &term, &g->capacity.term, terms, sizeof *g->term);
-        g->term = (gproj_term *)term;
-        done = done && gproji_trim(&s->own, &local, &g->capacity.local, locals, sizeof *g->local.variable);
-        g->local.variable = (int32_t *)local;
+        gproji_group_room *room = &g->capacity;
+        size_t rows = (size_t)g->row_count + 1, locals = gproji_local_count(g);
+        g->row = (gproji_row *)gproji_trim(&s->own, g->row, &room->row, rows, sizeof *g->row);
+        g->term = (gproj_term *)gproji_trim(&s->own, g->term, &room->term, g->term_count, sizeof *g->term);
+        g->local.variable = (int32_t *)gproji_trim(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+        trimmed = trimmed && room->row == rows && room->term == g->term_count && room->local == locals;
     }
-    if (!done) return false;
-    s->nodes.count = 0;
-    for (v = 0; v < s->variable_count; ++v)
-        if (v == s->blocks.first[v] || !s->blocks.joined[s->blocks.first[v]]) s->nodes.first[s->nodes.count++] = v;
-    s->nodes.first[s->nodes.count] = s->variable_count;
-    for (i = 0; i < s->nodes.count; ++i)
-        for (v = s->nodes.first[i]; v < s->nodes.first[i + 1]; ++v) s->nodes.of[v] = i;
+    nodes->of = gproji_take_ints(&s->taken, n);
+    nodes->first = gproji_take_ints(&s->taken, (int64_t)n + 1);
+    if (!trimmed || s->taken.failed) return false;
+    for (v = 0; v < n; ++v)
+        if (v == s->blocks.first[v] || !s->blocks.joined[s->blocks.first[v]]) nodes->first[nodes->count++] = v;
+    nodes->first[nodes->count] = n;
+    for (i = 0; i < nodes->count; ++i)
+        for (v = nodes->first[i]; v < nodes->first[i + 1]; ++v) nodes->of[v] = i;
     return true;
 }
 
 /* Bipartite graph that joins rows and nodes, with fewer than 2^32 edges. Two nodes are adjacent if they share a row. */
 typedef struct gproji_incidence {
+    gproji_pool pool; /* holds the arrays */
     int32_t node_count;
     uint32_t row_count;
-    size_t row_room, entry_room, node_entry_room;
     uint32_t *row_start;  /* row_count + 1 */
     int32_t *row_node;    /* nodes of each row */
     uint32_t *node_start; /* node_count + 1 */
@@ -8779,94 +8735,31 @@ typedef struct gproji_incidence {
     uint32_t *mark;       /* node_count: work */
 } gproji_incidence;
 
-GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
-    gproji_give(heap, in->row_start, in->row_room, sizeof *in->row_start);
-    gproji_give(heap, in->row_node, in->entry_room, sizeof *in->row_node);
-    gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
-    gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
-    gproji_give(heap, in->mark, (size_t)in->node_count, sizeof *in->mark);
-    memset(in, 0, sizeof *in);
-}
-
-/* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
-   first nodes that the next row has. False: no memory. */
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
-    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
-    int32_t i, r, v;
-    in->node_count = s->nodes.count;
-    in->row_room = 1;
-    for (i = 0; i < s->group_count; ++i) {
-        in->row_room += (size_t)s->group[i].row_count;
-        in->entry_room += gproji_local_count(&s->group[i]);
-    }
-    if (in->row_room > GPROJI_TERMS_MAX || in->entry_room > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
-    in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
-    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
-    in->mark = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count, sizeof *in->mark);
-    if (!in->row_start || !in->row_node || !in->node_start || !in->mark) return false;
-    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            const int32_t *local = g->local.variable + g->row[r].local, *last = g->local.variable + g->row[r + 1].local;
-            int32_t *node = in->row_node + end;
-            uint32_t count = 0, known = 0;
-            if (g->row[r].wide) continue;
-            for (++stamp; local < last; ++local) {
-                int32_t own = s->nodes.of[*local];
-                if (in->mark[own] == stamp) continue;
-                in->mark[own] = stamp;
-                node[count++] = own;
-            }
-            if (count < 2) continue;
-            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
-            while (known < end - before && known < count && node[known] == in->row_node[before + known]) ++known;
-            if (end == before || known < end - before) {
-                known = 0;
-                in->row_start[in->row_count++] = before = end;
-            }
-            for (e = known; e < count; ++e) {
-                in->row_node[before + e] = node[e];
-                in->node_start[node[e]]++;
-            }
-            end = before + count;
-        }
-    }
-    in->row_start[in->row_count] = end;
-    in->node_entry_room = end;
-    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
-    if (!in->node_row) return false;
-    /* 2. Transposes: sums up the counts, and fills each list from its end. */
-    for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
-    for (k = in->row_count; k-- > 0;)
-        for (e = in->row_start[k]; e < in->row_start[k + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = k;
-    return true;
-}
-
-/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back. Node v has
-   first[v + 1] - first[v] unknowns. */
+/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back, also one that
+   could not be taken. Node v has first[v + 1] - first[v] unknowns. */
 GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first) {
     const uint32_t *row_start = in->row_start;
     uint32_t *mark = in->mark;
     const int32_t nodes = in->node_count;
     gproj_code code = GPROJ_ERROR_MEMORY;
     size_t room = 0, filled = 0;
-    int64_t *start = (int64_t *)gproji_take(&s->own, (size_t)nodes + 1, sizeof *start);
-    int32_t *size = (int32_t *)gproji_take(&s->own, (size_t)nodes, sizeof *size), *adjacent = NULL, v;
-    bool done = start && size;
-    memset(mark, 0, (size_t)nodes * sizeof *mark);
+    int64_t *start;
+    int32_t *size, *adjacent = NULL, v;
+    gproji_pool pool;
+    bool done;
+    gproji_pool_start(&pool, &s->own);
+    start = (int64_t *)gproji_pool_take(&pool, (int64_t)nodes + 1, sizeof *start);
+    size = gproji_take_ints(&pool, nodes);
+    done = !in->pool.failed && !pool.failed;
+    if (done) memset(mark, 0, (size_t)nodes * sizeof *mark);
     for (v = 0; done && v < nodes; ++v) {
         const uint32_t own = (uint32_t)v + 1, *rows = in->node_row + in->node_start[v], *row;
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
         size_t most = filled + 1; /* as if the node's rows had nothing in common; never none */
         for (row = rows; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
-        if (most > room) {
-            void *block = adjacent;
-            done = gproji_reserve(&s->own, &block, &room, most, sizeof *adjacent);
-            adjacent = (int32_t *)block;
-            if (!done) break;
-        }
+        adjacent = (int32_t *)gproji_grow(&s->own, adjacent, &room, most, sizeof *adjacent);
+        done = most <= room;
+        if (!done) break;
         /* Lists the nodes in all rows at v, each once; v itself is not. */
         start[v] = (int64_t)filled;
         size[v] = first[v + 1] - first[v];
@@ -8880,18 +8773,77 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
             }
         }
     }
-    gproji_incidence_give(&s->own, in); /* before the analysis, which needs much memory itself */
+    gproji_pool_give_all(&in->pool); /* before the analysis, which needs much memory itself */
     if (done) start[nodes] = (int64_t)filled;
     if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
-    gproji_give(&s->own, start, (size_t)nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, (size_t)nodes, sizeof *size);
     gproji_give(&s->own, adjacent, room, sizeof *adjacent);
+    gproji_pool_give_all(&pool);
     return code;
+}
+
+/* Step 3 for the matrix with all variables: lists the incidence of narrow rows and nodes, without rows that join
+   nothing more (those with one node, or with the first nodes that the next row has), and analyses the graph. */
+GPROJI_INTERNAL gproj_code gproji_analyse_whole(gproj_system *s) {
+    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
+    size_t rows = 1, entries = 0;
+    gproji_incidence in;
+    int32_t i, r, v;
+    for (i = 0; i < s->group_count; ++i) {
+        rows += (size_t)s->group[i].row_count;
+        entries += gproji_local_count(&s->group[i]);
+    }
+    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) {
+        gproji_refuse_rows(s, NULL);
+        return GPROJ_ERROR_SIZE;
+    }
+    memset(&in, 0, sizeof in);
+    gproji_pool_start(&in.pool, &s->own);
+    in.node_count = s->nodes.count;
+    in.row_start = (uint32_t *)gproji_pool_take(&in.pool, (int64_t)rows, sizeof *in.row_start);
+    in.row_node = (int32_t *)gproji_pool_take(&in.pool, (int64_t)entries, sizeof *in.row_node);
+    in.node_start = (uint32_t *)gproji_pool_take_zeroed(&in.pool, (int64_t)in.node_count + 1, sizeof(uint32_t));
+    in.mark = (uint32_t *)gproji_pool_take_zeroed(&in.pool, in.node_count, sizeof *in.mark);
+    if (in.pool.failed) return gproji_analyse_graph(s, &in, s->nodes.first);
+    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            const int32_t *local = g->local.variable + g->row[r].local, *last = g->local.variable + g->row[r + 1].local;
+            int32_t *node = in.row_node + end;
+            uint32_t count = 0, known = 0;
+            if (g->row[r].wide) continue;
+            for (++stamp; local < last; ++local) {
+                int32_t own = s->nodes.of[*local];
+                if (in.mark[own] == stamp) continue;
+                in.mark[own] = stamp;
+                node[count++] = own;
+            }
+            if (count < 2) continue;
+            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
+            while (known < end - before && known < count && node[known] == in.row_node[before + known]) ++known;
+            if (end == before || known < end - before) {
+                known = 0;
+                in.row_start[in.row_count++] = before = end;
+            }
+            for (e = known; e < count; ++e) {
+                in.row_node[before + e] = node[e];
+                in.node_start[node[e]]++;
+            }
+            end = before + count;
+        }
+    }
+    in.row_start[in.row_count] = end;
+    in.node_row = (uint32_t *)gproji_pool_take(&in.pool, end, sizeof *in.node_row);
+    /* 2. Transposes: sums up the counts, and fills each list from its end. */
+    for (v = 1; v <= in.node_count; ++v) in.node_start[v] += in.node_start[v - 1];
+    for (k = in.node_row ? in.row_count : 0; k-- > 0;)
+        for (e = in.row_start[k]; e < in.row_start[k + 1]; ++e) in.node_row[--in.node_start[in.row_node[e]]] = k;
+    return gproji_analyse_graph(s, &in, s->nodes.first);
 }
 
 /* Prefetches rows that follow the k-th, with or without gradients: a front's rows come from all over the memory. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gradient) {
-    if (k + GPROJI_ROWS_AHEAD < (int64_t)s->fronts.row_count) {
+    if (k + GPROJI_ROWS_AHEAD < s->fronts.row_count) {
         gproji_row_name far_one = s->fronts.row[k + GPROJI_ROWS_AHEAD];
         gproji_row_name near_one = s->fronts.row[k + GPROJI_ROWS_AHEAD / 2];
         const gproji_group *g = &s->group[near_one.group];
@@ -8904,82 +8856,18 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
     }
 }
 
-/* A permutation that sorts a row's locals. */
-typedef struct gproji_sorting {
-    uint16_t *from; /* the local that comes to each place, before the sort */
-    uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
-} gproji_sorting;
-
-/* Permutations met last, by the number of locals and by the order of three among them. Most rows are sorted like the
-   last one, since few have more than three nodes. */
-typedef struct gproji_sortings {
-    gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
-    gproji_sorting many; /* for the row at hand if it has more */
-    uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
-    uint16_t many_from[GPROJI_WIDE_ROW];
-} gproji_sortings;
-
-/* Starts with the identity. */
-GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *from, int32_t count) {
-    int32_t i;
-    for (i = 0; i < count; ++i) from[i] = (uint16_t)i;
-    sorting->from = from;
-    sorting->order = 0;
-}
-
-/* Sorts a row's locals by columns, which are written to `at`. Returns the permutation. */
-GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, const int32_t *GPROJI_RESTRICT column,
-                                                       int32_t count, int32_t *GPROJI_RESTRICT local,
-                                                       int32_t *GPROJI_RESTRICT at) {
-    gproji_sorting *sorting = &all->many;
-    int32_t variable[GPROJI_WIDE_ROW], i, k, last = -1;
-    uint16_t *from;
-    bool ascending = true, moved = false;
-    /* 1. Guesses the permutation from three comparisons. */
-    if (count > GPROJI_COPY_LOCALS) {
-        gproji_start_sorting(sorting, all->many_from, count);
-    } else {
-        int32_t one = column[local[0]], two = column[local[count > 1]], three = column[local[count - 1]];
-        sorting = &all->last[count][(one < two) + 2 * (two < three) + 4 * (one < three)];
-    }
-    /* 2. Applies it. */
-    from = sorting->from;
-    memcpy(variable, local, (size_t)count * sizeof *local);
-    for (i = 0; i < count; ++i) {
-        local[i] = variable[from[i]];
-        at[i] = column[local[i]];
-        ascending &= at[i] > last;
-        last = at[i];
-    }
-    if (ascending) return sorting;
-    /* 3. Corrects it by insertion: rows are short, and their terms name a node's variables in order. */
-    for (i = 1; i < count; ++i) {
-        int32_t own_at = at[i], own = local[i];
-        uint16_t own_from = from[i];
-        for (k = i; k > 0 && at[k - 1] > own_at; --k) at[k] = at[k - 1], local[k] = local[k - 1], from[k] = from[k - 1];
-        at[k] = own_at, local[k] = own, from[k] = own_from;
-    }
-    for (i = 0, sorting->order = 0; i < count; ++i) {
-        sorting->order = sorting->order << 4 | (from[i] & 15);
-        moved |= from[i] != i;
-    }
-    if (!moved || count > GPROJI_COPY_LOCALS) sorting->order = moved;
-    return sorting;
-}
-
 /* Cache entry: a copy made from shared terms for a permutation. */
 typedef struct gproji_copy {
-    uint64_t order; /* see gproji_sorting */
+    uint64_t order; /* the permutation, 4 bits each */
     uint32_t source, term;
     int32_t locals; /* 0: none */
 } gproji_copy;
 
-/* Lets terms name the locals by their new numbers. */
-GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals,
-                                       const gproji_sorting *sorting) {
+/* Lets terms name the locals by their new numbers. key: see gproji_place_group. */
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals, const uint64_t *key) {
     gproj_term *end = term + count;
     int32_t rank[GPROJI_WIDE_ROW], i;
-    for (i = 0; i < locals; ++i) rank[sorting->from[i]] = i;
+    for (i = 0; i < locals; ++i) rank[key[i] & 0xffff] = i;
     for (; term < end; ++term) {
         term->i = rank[term->i];
         if (term->j >= 0) term->j = rank[term->j];
@@ -8988,53 +8876,64 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t
 
 /* Gives the row a copy with terms for the permuted locals: another row's if `cache` has it. False: no memory. */
 GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
-                                       const gproji_sorting *sorting, gproji_copy *cache) {
-    const uint64_t order = sorting->order;
+                                       uint64_t order, const uint64_t *key, gproji_copy *cache) {
     gproji_copy *known = cache + (order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS));
-    bool enough, cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
+    bool cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
     size_t wanted = g->term_count + row->terms;
-    void *term = g->term;
     if (cached && known->order == order && known->source == row->source && known->locals == locals) {
         row->term = known->term;
         return true;
     }
     if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
-    enough = gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
-    g->term = (gproj_term *)term;
-    if (!enough) return false;
+    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &g->capacity.term, wanted, sizeof *g->term);
+    if (g->capacity.term < wanted) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
-    gproji_rename_terms(g->term + g->term_count, row->terms, locals, sorting);
+    gproji_rename_terms(g->term + g->term_count, row->terms, locals, key);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
     if (cached) known->order = order, known->source = row->source, known->locals = locals, known->term = row->term;
     return true;
 }
 
-/* Sorts the locals in each narrow row by columns, which are written to local_at. The first one names the row's front,
+/* Sorts the locals in each narrow row by columns, which are written to local.at. The first one names the row's front,
    -1: none; fronts.start counts the rows of each. host: fronts by columns. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
                                         int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
-    gproji_sortings sortings;
-    int32_t r, i, k;
+    uint64_t key[GPROJI_WIDE_ROW]; /* the column and, in the lowest 16 bits, the local's number before */
+    int32_t variable[GPROJI_WIDE_ROW], r, i, k;
     memset(copy, 0, sizeof copy);
-    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
-        for (k = 0; k < 8; ++k) gproji_start_sorting(&sortings.last[i][k], sortings.last_from[i][k], i);
     g->local.sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t *local = g->local.variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local.at + row->local;
-        const gproji_sorting *sorting;
+        int32_t *local = g->local.variable + row->local, *at = g->local.at + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        uint64_t order = 0, last = 0;
+        bool moved = false;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        sorting = gproji_sort_locals(&sortings, column, count, local, at);
-        if (sorting->order && !g->common) {
-            gproji_rename_terms(g->term + row->term, row->terms, count, sorting);
-        } else if (sorting->order && !gproji_copy_terms(s, g, row, count, sorting, copy)) {
-            /* The terms are still for the old order: restores it, so that the rows stay valid. */
-            int32_t variable[GPROJI_WIDE_ROW];
-            for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
+        /* 1. Sorts by insertion: rows are short, and their terms name a node's variables in order. */
+        for (i = 0; i < count; ++i) {
+            uint64_t own = (uint64_t)column[local[i]] << 16 | (uint64_t)i;
+            variable[i] = local[i];
+            if (own >= last) {
+                key[i] = last = own;
+                continue;
+            }
+            for (k = i; k > 0 && key[k - 1] > own; --k) key[k] = key[k - 1];
+            key[k] = own;
+            moved = true;
+        }
+        for (i = 0; i < count; ++i) {
+            uint64_t from = key[i] & 0xffff;
+            at[i] = (int32_t)(key[i] >> 16);
+            local[i] = variable[from];
+            order = order << 4 | (from & 15);
+        }
+        /* 2. Lets the terms follow. Without memory they keep the old order, so that is restored. */
+        if (moved && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, count, key);
+        } else if (moved && !gproji_copy_terms(s, g, row, count, order, key, copy)) {
             memcpy(local, variable, (size_t)count * sizeof *local);
             return false;
         }
@@ -9046,38 +8945,36 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
 
 GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
     int32_t i;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        g->local.at = (int32_t *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.at);
-        if (!g->local.at) return false;
-    }
-    return true;
+    for (i = 0; i < s->group_count; ++i)
+        s->group[i].local.at = gproji_take_ints(&s->taken, (int64_t)gproji_local_count(&s->group[i]));
+    return !s->taken.failed;
 }
 
 /* Step 4, for the matrix with all variables: finds each row's front, and the locals' padded rows there. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     gproji_front_rows *rows = &s->fronts;
-    size_t n = (size_t)s->variable_count, all = 0, row;
-    int32_t *column = (int32_t *)gproji_take(&s->own, n, sizeof *column); /* variables */
-    int32_t *at = (int32_t *)gproji_take(&s->own, n, sizeof *at);         /* columns: front; then padded row */
-    int32_t *front, i, r, f;                                              /* rows, group by group; -1: none */
-    int64_t k;
+    int32_t *column, *at; /* of variables; by columns: front, and then padded row */
+    int32_t *front;       /* of rows, group by group; -1: none */
+    int32_t i, r, f;
+    int64_t all = 0, row, k;
+    gproji_pool pool;
     bool done;
-    for (i = 0; i < s->group_count; ++i) all += (size_t)s->group[i].row_count;
-    front = (int32_t *)gproji_take(&s->own, all, sizeof *front);
-    rows->count = (size_t)sy->fronts;
-    rows->row_room = all;
-    rows->start = (int64_t *)gproji_take_zeroed(&s->own, rows->count + 2, sizeof *rows->start);
-    rows->row = (gproji_row_name *)gproji_take(&s->own, all, sizeof *rows->row);
-    done = column && at && front && rows->start && rows->row && gproji_take_local_places(s);
+    for (i = 0; i < s->group_count; ++i) all += s->group[i].row_count;
+    gproji_pool_start(&pool, &s->own);
+    column = gproji_take_ints(&pool, s->variable_count);
+    at = gproji_take_ints(&pool, s->variable_count);
+    front = gproji_take_ints(&pool, all);
+    rows->start = (int64_t *)gproji_pool_take_zeroed(&s->taken, (int64_t)sy->fronts + 2, sizeof *rows->start);
+    rows->row = (gproji_row_name *)gproji_pool_take(&s->taken, all, sizeof *rows->row);
+    done = gproji_take_local_places(s) && !pool.failed;
     /* 1. Sorts each row's locals by columns; the first one names the front. */
     if (done) gproji_invert(s->variable_count, s->cholesky->permutation, column);
     for (f = 0; done && f < sy->fronts; ++f)
         for (i = 0; i < sy->front[f].width; ++i) at[sy->front[f].first + i] = f;
     for (i = 0, row = 0; done && i < s->group_count; ++i) {
         done = gproji_place_group(s, &s->group[i], column, at, front + row);
-        row += (size_t)s->group[i].row_count;
+        row += s->group[i].row_count;
     }
     /* 2. Sorts the rows by fronts: start[f + 2] counts those for front f, and start[f + 1] moves on to their end. */
     for (f = 0; done && f < sy->fronts; ++f) rows->start[f + 2] += rows->start[f + 1];
@@ -9088,7 +8985,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
             rows->row[k].group = i;
             rows->row[k].row = r;
         }
-    if (done) rows->row_count = (size_t)rows->start[rows->count];
+    if (done) rows->row_count = rows->start[sy->fronts];
     /* 3. Turns columns into padded rows, front by front. */
     for (f = 0; done && f < sy->fronts; ++f) {
         if (rows->start[f] < rows->start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
@@ -9100,58 +8997,39 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
             for (; local < end; ++local) *local = at[*local];
         }
     }
-    gproji_give(&s->own, column, n, sizeof *column);
-    gproji_give(&s->own, at, n, sizeof *at);
-    gproji_give(&s->own, front, all, sizeof *front);
+    gproji_pool_give_all(&pool);
     return done;
-}
-
-/* Steps 3 and 4, for the matrix with all variables. */
-GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
-    gproji_incidence in;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    memset(&in, 0, sizeof in);
-    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->nodes.first);
-    gproji_incidence_give(&s->own, &in);
-    return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
 /* Step 5: takes the arrays that iterations need, once; asks for all of them even if one is refused, see
    gproji_foretell. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
-    size_t n = (size_t)s->variable_count, wide = (size_t)s->wide_count;
+    int64_t n = s->variable_count, wide = s->wide_count, hinges = 0;
+    gproji_pool *pool = &s->taken;
     int32_t i, r;
     uint32_t t;
-    bool done = true;
     if (s->vector.sides) return true;
-    s->hinges.taken = 0;
+    pool->failed = false; /* a forecast's */
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local.gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.gradient);
-        g->tally.part = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        done = done && g->local.gradient && g->tally.part;
-        if (g->kind == GPROJ_BOUND) s->hinges.taken += (size_t)g->row_count;
+        g->local.gradient = (double *)gproji_pool_take(pool, (int64_t)gproji_local_count(g), sizeof(double));
+        g->tally.part = (gproji_tally *)gproji_pool_take(pool, gproji_group_tasks(g), sizeof(gproji_tally));
+        if (g->kind == GPROJ_BOUND) hinges += g->row_count;
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
-        for (r = 0; done && g->has_wide && r < g->row_count; ++r) {
+        for (r = 0; !pool->failed && g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
-    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) /* a product overflows: refused */
-        return gproji_take(&s->own, SIZE_MAX, 1) != NULL;
-    s->wide.taken = wide;
-    s->hinges.list = (gproji_hinge *)gproji_take(&s->own, s->hinges.taken, sizeof *s->hinges.list);
-    s->vector.gradient = (double *)gproji_take(&s->own, n, sizeof *s->vector.gradient);
-    s->vector.saved = (double *)gproji_take(&s->own, n, sizeof *s->vector.saved);
-    s->vector.sides = s->vector.step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->vector.sides);
-    s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
-    s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
-    done = done && s->hinges.list && s->vector.gradient && s->vector.saved && s->vector.sides && s->wide.matrix &&
-           s->wide.vector;
-    if (wide == 0) return done;
-    s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
-    s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
-    return done && s->wide.residual && s->wide.balance;
+    s->hinges = (gproji_hinge *)gproji_pool_take(pool, hinges, sizeof(gproji_hinge));
+    s->vector.gradient = (double *)gproji_pool_take(pool, n, sizeof(double));
+    s->vector.saved = (double *)gproji_pool_take(pool, n, sizeof(double));
+    s->vector.sides = s->vector.step = (double *)gproji_pool_take(pool, (wide + 1) * n, sizeof(double));
+    s->wide.matrix = (double *)gproji_pool_take(pool, wide * wide, sizeof(double));
+    s->wide.vector = (double *)gproji_pool_take(pool, wide, sizeof(double));
+    if (wide > 0) s->wide.residual = (double *)gproji_pool_take(pool, n, sizeof(double));
+    if (wide > 0) s->wide.balance = (double *)gproji_pool_take(pool, n, sizeof(double));
+    return !pool->failed;
 }
 
 /* -- evaluation -- */
@@ -9710,15 +9588,13 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
     d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
-    d->auxiliary = (int32_t *)gproji_pool_take(&d->pool, elements, sizeof(int32_t));
+    d->auxiliary = gproji_take_ints(&d->pool, elements);
     d->zero_sum = (uint8_t *)gproji_pool_take(&d->pool, elements, 1);
-    d->first = (int32_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int32_t));
+    d->first = gproji_take_ints(&d->pool, elements + 1);
     d->link_start = (int64_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int64_t));
     for (i = 0; i < s->group_count; ++i) links += (int64_t)gproji_local_count(&s->group[i]); /* at most */
-    d->link_node = (int32_t *)gproji_pool_take(&d->pool, links, sizeof(int32_t));
-    if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->zero_sum || !d->first || !d->link_start ||
-        !d->link_node)
-        return false;
+    d->link_node = gproji_take_ints(&d->pool, links);
+    if (d->pool.failed) return false;
     /* 1. Counting sort: rows by elements, and behind them those with a single node by these. */
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r, ++to) {
@@ -9763,15 +9639,17 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
 /* Step 2: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
-    size_t nodes = (size_t)s->nodes.count, rows = 0, v;
+    int64_t nodes = s->nodes.count, rows = 0, v;
     gproji_elements elements;
     int32_t *mark, *belongs, *to, i, r; /* belongs: by rows, group by group */
-    bool enough, pays;
+    gproji_pool pool;
+    bool enough, pays = true;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
-    for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
-    mark = (int32_t *)gproji_take(&s->own, 3 * nodes, sizeof *mark);
-    belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
-    enough = pays = mark && belongs;
+    for (i = 0; i < s->group_count; ++i) rows += s->group[i].row_count;
+    gproji_pool_start(&pool, &s->own);
+    mark = gproji_take_ints(&pool, 3 * nodes);
+    belongs = gproji_take_ints(&pool, rows);
+    enough = !pool.failed;
     if (enough) {
         for (v = 0; v < 3 * nodes; ++v) mark[v] = -1;
         elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
@@ -9780,41 +9658,45 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
             for (r = 0; pays && r < s->group[i].row_count; ++r)
                 pays = gproji_schur_belongs(s, &s->group[i], &s->group[i].row[r], &elements, to++) &&
                        s->schur.elements <= limit;
-        if (pays && s->schur.elements > 0) enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+        if (pays && s->schur.elements > 0) enough = gproji_schur_find(s, belongs, rows, mark);
     }
-    gproji_give(&s->own, mark, 3 * nodes, sizeof *mark);
-    gproji_give(&s->own, belongs, rows, sizeof *belongs);
+    gproji_pool_give_all(&pool);
     if (!s->schur.on) gproji_schur_forget(s);
     return enough;
 }
 
-/* Takes the incidence whose rows are the system's nodes, and whose nodes are the elements. False: no memory. */
-GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *in) {
+/* Step 3, for multipliers: lists the incidence whose rows are the system's nodes, and whose nodes are the elements, and
+   analyses the graph. */
+GPROJI_INTERNAL gproj_code gproji_analyse_elements(gproj_system *s) {
     const gproji_schur *d = &s->schur;
     int64_t links = d->link_start[d->elements];
+    gproji_incidence in;
     uint32_t k;
     int32_t v, e;
-    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
-    in->node_count = d->elements;
-    in->row_count = (uint32_t)s->nodes.count;
-    in->row_room = (size_t)s->nodes.count + 2;
-    in->entry_room = in->node_entry_room = (size_t)links;
-    in->row_start = (uint32_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
-    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
-    in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
-    in->mark = (uint32_t *)gproji_take(&s->own, (size_t)d->elements, sizeof *in->mark);
-    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start || !in->mark) return false;
+    if ((uint64_t)links > GPROJI_TERMS_MAX) {
+        gproji_refuse_rows(s, NULL);
+        return GPROJ_ERROR_SIZE;
+    }
+    memset(&in, 0, sizeof in);
+    gproji_pool_start(&in.pool, &s->own);
+    in.node_count = d->elements;
+    in.row_count = (uint32_t)s->nodes.count;
+    in.row_start = (uint32_t *)gproji_pool_take_zeroed(&in.pool, (int64_t)s->nodes.count + 2, sizeof(uint32_t));
+    in.row_node = gproji_take_ints(&in.pool, links);
+    in.node_row = (uint32_t *)gproji_pool_take(&in.pool, links, sizeof(uint32_t));
+    in.node_start = (uint32_t *)gproji_pool_take(&in.pool, (int64_t)d->elements + 1, sizeof(uint32_t));
+    in.mark = (uint32_t *)gproji_pool_take(&in.pool, d->elements, sizeof(uint32_t));
+    if (in.pool.failed) return gproji_analyse_graph(s, &in, d->first);
     /* Links are the elements' lists; sorted by nodes they are the nodes'. */
-    for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
-    for (v = 0; v < s->nodes.count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
+    for (k = 0; k < links; ++k) in.row_start[d->link_node[k] + 2]++;
+    for (v = 0; v < s->nodes.count; ++v) in.row_start[v + 2] += in.row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
-        for (k = in->node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
-            in->node_row[k] = (uint32_t)d->link_node[k];
-            in->row_node[in->row_start[d->link_node[k] + 1]++] = e;
+        for (k = in.node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
+            in.node_row[k] = (uint32_t)d->link_node[k];
+            in.row_node[in.row_start[d->link_node[k] + 1]++] = e;
         }
-    in->node_start[d->elements] = (uint32_t)links;
-    return true;
+    in.node_start[d->elements] = (uint32_t)links;
+    return gproji_analyse_graph(s, &in, d->first);
 }
 
 /* Consecutive elements with local unknowns that are alike: `left` multipliers, m rows and `count` columns, the first
@@ -9868,8 +9750,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
     w->entry_start = (int64_t *)gproji_pool_take_zeroed(pool, nodes + 1, sizeof(int64_t));
     w->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
-    w->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    w->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    w->entry = gproji_take_ints(pool, entries);
+    w->entry_at = gproji_take_ints(pool, entries);
     w->front_start = (int64_t *)gproji_pool_take(pool, fronts + 1, sizeof(int64_t));
     w->coupling = (gproji_coupling *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *w->coupling);
     w->front_entry = (int64_t *)gproji_pool_take(pool, fronts, sizeof(int64_t));
@@ -9881,9 +9763,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = gproji_take_aligned(pool, d->chunks * d->most);
-    return d->root_start && d->link_value && w->entry_start && w->value_start && w->entry && w->entry_at &&
-           w->front_start && w->coupling && w->front_entry && w->value && d->root && d->side && d->share && d->metric &&
-           d->turns && d->triangle && d->work;
+    return !pool->failed;
 }
 
 /* Places W: node by node, at each the multipliers in elimination order. Work: sequence, by nodes; at, by nodes and by
@@ -9968,25 +9848,21 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
     }
 }
 
-/* Steps 3 and 4, for multipliers. */
-GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    gproji_incidence in;
-    size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
-    int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
-    int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->nodes.count, sizeof *sequence);
-    memset(&in, 0, sizeof in);
-    if (at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
-        code = gproji_analyse_graph(s, &in, s->schur.first);
-    if (code == GPROJ_OK && !gproji_schur_take(s)) code = GPROJ_ERROR_MEMORY;
-    if (code == GPROJ_OK) {
+/* Step 4, for multipliers. */
+GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
+    gproji_pool pool;
+    int32_t *at, *sequence;
+    bool done;
+    gproji_pool_start(&pool, &s->own);
+    at = gproji_take_ints(&pool, gproji_max(s->variable_count, s->schur.first[s->schur.elements]));
+    sequence = gproji_take_ints(&pool, s->nodes.count);
+    done = gproji_take_local_places(s) && gproji_schur_take(s) && !pool.failed;
+    if (done) {
         gproji_schur_place_matrix(s, sequence, at);
         gproji_schur_place_locals(s, at);
     }
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, at, most, sizeof *at);
-    gproji_give(&s->own, sequence, (size_t)s->nodes.count, sizeof *sequence);
-    return code;
+    gproji_pool_give_all(&pool);
+    return done;
 }
 
 /* Lets idle groups that have got a weight count; returns whether there were any. */
@@ -10014,7 +9890,9 @@ GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     if (gproji_compile_variables(s) && gproji_schur_decide(s)) {
         s->schur.stale = s->schur.on && whole;
         if (s->schur.stale) gproji_schur_forget(s);
-        code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s); /* steps 3 and 4 */
+        code = s->schur.on ? gproji_analyse_elements(s) : gproji_analyse_whole(s);
+        if (code == GPROJ_OK && !(s->schur.on ? gproji_place_elements(s) : gproji_compile_places(s)))
+            code = GPROJ_ERROR_MEMORY;
     }
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
     s->compiled = code == GPROJ_OK;
@@ -11146,7 +11024,7 @@ typedef struct gproji_course {
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
-    m->hinge = s->hinges.list;
+    m->hinge = s->hinges;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
@@ -11167,7 +11045,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
                 m->c[3] += w2 * 2 * h * q;
                 m->c[4] += w2 * q * q;
             } else if (!(phi + 2 * gproji_fmin(h, 0) + 4 * gproji_fmin(q, 0) >= 0)) { /* a t <= 2 may violate it */
-                gproji_hinge *hinge = &s->hinges.list[m->count++];
+                gproji_hinge *hinge = &s->hinges[m->count++];
                 hinge->w2 = w2, hinge->phi = phi, hinge->h = h, hinge->q = q;
             }
         }
@@ -11870,13 +11748,13 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
     bool done;
     int32_t i;
-    if (!s->vector.sum)
-        s->vector.sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->vector.sum);
+    if (!s->vector.sum) s->vector.sum = (double *)gproji_pool_take(&s->taken, s->variable_count, sizeof *s->vector.sum);
     done = s->vector.sum != NULL;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
-        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier)
+            g->multiplier = (gproji_multiplier *)gproji_pool_take(&s->taken, g->row_count, sizeof *g->multiplier);
         done = done && g->multiplier;
         if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
     }
@@ -19468,7 +19346,7 @@ GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t
                                          size_t locals) {
     gproj_system *s = form->system;
     if (group >= 0 &&
-        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms, locals)))
+        !(gproji_reserve_variables(s, variables) && gproji_make_room(s, &s->group[group], rows, terms, locals)))
         gproji_fail_memory(&s->error);
 }
 
