@@ -1913,11 +1913,6 @@ GPROJI_INLINE bool gproji_is_finite(double x) {
 
 GPROJ_API int32_t gproj_version(void) { return GPROJ_VERSION_NUMBER; }
 
-GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
-    size_t i, odd = 0;
-    for (i = 0; i < count; ++i) odd += !gproji_is_finite(x[i]);
-    return odd == 0;
-}
 /* ============================================================================================================
    >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
 
@@ -2483,14 +2478,6 @@ GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
 }
 
-/* Takes an object's struct from a new heap, which moves into the object as the first member. */
-GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
-    gproji_heap heap = gproji_heap_of(host);
-    void *object = gproji_take_zeroed(&heap, 1, size);
-    if (object) memcpy(object, &heap, sizeof heap);
-    return object;
-}
-
 GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_heap heap;
     memcpy(&heap, object, sizeof heap);
@@ -2716,10 +2703,14 @@ GPROJI_INTERNAL bool gproji_given(const void *argument, const char *noun, gproj_
     return argument != NULL;
 }
 
-/* Takes an object's struct from a new heap, as gproji_create_object does; fails without memory. */
-GPROJI_INTERNAL void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
-    void *object = gproji_create_object(host, size);
-    if (!object) gproji_fail_memory(error);
+/* Takes an object's struct, zeroed, from a new heap, which moves into the object as the first member. */
+GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    void *object = gproji_take_zeroed(&heap, 1, size);
+    if (object)
+        memcpy(object, &heap, sizeof heap);
+    else
+        gproji_fail_memory(error);
     return object;
 }
 
@@ -3502,16 +3493,6 @@ GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t 
     return panel->update_rows - gproji_strip_begin(at - pivot_end);
 }
 
-/* Writes the columns that belong to all storage rows before `to`, the end of a block, to column[at]. */
-GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, double **column) {
-    int32_t at, i;
-    for (at = 0; at < to; at += GPROJI_BLOCK) {
-        double *first = gproji_panel_column(panel, at);
-        ptrdiff_t stride = gproji_column_stride(panel, at);
-        for (i = 0; i < GPROJI_BLOCK; ++i, first += stride) column[at + i] = first;
-    }
-}
-
 /* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides all but the last one. */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
@@ -3658,23 +3639,6 @@ GPROJI_INTERNAL void gproji_clear(double *values, ptrdiff_t count) {
     for (; count > GPROJI_CLEARED; count -= GPROJI_CLEARED, values += GPROJI_CLEARED)
         memset(values, 0, GPROJI_CLEARED * sizeof *values);
     memset(values, 0, (size_t)count * sizeof *values);
-}
-
-/* Sets the columns that belong to storage rows [from, to) to 0. */
-GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
-    int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
-    from = gproji_max(from, panel->shift);
-    if (from < end) {
-        ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
-        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
-        gproji_clear(panel->values + begin, next - begin);
-    }
-    from = gproji_max(from, pivot_end) - pivot_end, to -= pivot_end;
-    if (from < to) {
-        ptrdiff_t begin = gproji_update_offset(panel->update_rows, from) + gproji_strip_begin(from);
-        ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
-        gproji_clear(panel->update + begin, next - begin);
-    }
 }
 
 #ifdef GPROJ_USE_CBLAS
@@ -4104,66 +4068,59 @@ GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total,
     }
 }
 
-/* Takes memory for a graph and fills the lists with all nodes that are not dense. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph, int32_t total) {
-    int32_t **const ints[] = {&amd->length,   &amd->weight,    &amd->degree, &amd->next,
-                              &amd->previous, &amd->hash_head, &amd->tail,   &amd->chain};
-    int32_t i, n = graph->nodes;
-    int64_t k;
-    size_t a;
-    memset(amd, 0, sizeof *amd);
-    amd->nodes = n;
-    amd->buckets = total + 1;
-    amd->stamp = 1;
-    amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
-    amd->space = gproji_take_ints(pool, amd->size);
-    amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-    amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
-    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    amd->head = gproji_take_ints(pool, amd->buckets);
-    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) *ints[a] = gproji_take_ints(pool, n);
-    if (pool->failed) return false;
-    gproji_mark_dense(graph, total, amd->kind, GPROJI_AMD_DENSE);
-    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
-    for (i = 0; i < n; ++i) {
-        int32_t degree = 0;
-        amd->hash_head[i] = amd->chain[i] = -1;
-        amd->tail[i] = i;
-        amd->weight[i] = graph->weight[i];
-        amd->list[i] = amd->free;
-        amd->length[i] = 0;
-        if (amd->kind[i] == GPROJI_AMD_DENSE) continue;
-        amd->total += amd->weight[i];
-        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) {
-            int32_t j = graph->adjacent[k];
-            if (amd->kind[j] == GPROJI_AMD_DENSE) continue;
-            amd->space[amd->free++] = j;
-            degree += graph->weight[j];
-        }
-        amd->length[i] = (int32_t)(amd->free - amd->list[i]);
-        amd->degree[i] = degree;
-    }
-    amd->left = amd->total;
-    for (i = n - 1; i >= 0; --i)
-        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
-    amd->lowest = 0;
-    return true;
-}
-
 /* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops to factor: an upper
    bound, exact without dense nodes. total: the weight of all nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                       double *flops) {
-    gproji_pool pool;
     gproji_amd amd;
-    int32_t i, count = 0;
+    int32_t **const ints[] = {&amd.length,   &amd.weight,    &amd.degree, &amd.next,
+                              &amd.previous, &amd.hash_head, &amd.tail,   &amd.chain};
+    int32_t i, n = graph->nodes, count = 0;
+    int64_t k;
+    size_t a;
+    gproji_pool pool;
     gproji_pool_start(&pool, heap);
-    if (!gproji_amd_start(&amd, &pool, graph, total)) {
+    memset(&amd, 0, sizeof amd);
+    amd.nodes = n;
+    amd.buckets = total + 1;
+    amd.stamp = 1;
+    amd.size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
+    amd.space = gproji_take_ints(&pool, amd.size);
+    amd.list = (int64_t *)gproji_pool_take(&pool, n, sizeof(int64_t));
+    amd.mark = (int64_t *)gproji_pool_take_zeroed(&pool, n, sizeof(int64_t));
+    amd.elements = (int32_t *)gproji_pool_take_zeroed(&pool, n, sizeof(int32_t));
+    amd.kind = (unsigned char *)gproji_pool_take_zeroed(&pool, n, 1);
+    amd.head = gproji_take_ints(&pool, amd.buckets);
+    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) *ints[a] = gproji_take_ints(&pool, n);
+    if (pool.failed) {
         gproji_pool_give_all(&pool);
         return false;
     }
-    while (amd.left > 0) {
+    /* 1. Lists all nodes that are not dense. */
+    gproji_mark_dense(graph, total, amd.kind, GPROJI_AMD_DENSE);
+    for (i = 0; i < amd.buckets; ++i) amd.head[i] = -1;
+    for (i = 0; i < n; ++i) {
+        int32_t degree = 0;
+        amd.hash_head[i] = amd.chain[i] = -1;
+        amd.tail[i] = i;
+        amd.weight[i] = graph->weight[i];
+        amd.list[i] = amd.free;
+        amd.length[i] = 0;
+        if (amd.kind[i] == GPROJI_AMD_DENSE) continue;
+        amd.total += amd.weight[i];
+        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) {
+            int32_t j = graph->adjacent[k];
+            if (amd.kind[j] == GPROJI_AMD_DENSE) continue;
+            amd.space[amd.free++] = j;
+            degree += graph->weight[j];
+        }
+        amd.length[i] = (int32_t)(amd.free - amd.list[i]);
+        amd.degree[i] = degree;
+    }
+    for (i = n - 1; i >= 0; --i)
+        if (amd.kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(&amd, i);
+    /* 2. Eliminates a node of least degree, with those that it has absorbed, until none is left; then dense ones. */
+    for (amd.left = amd.total, amd.lowest = 0; amd.left > 0;) {
         int32_t pivot, member;
         while (amd.head[amd.lowest] < 0) amd.lowest++;
         pivot = amd.head[amd.lowest];
@@ -4171,9 +4128,9 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
         gproji_amd_eliminate(&amd, pivot);
         for (member = pivot; member >= 0; member = amd.chain[member]) order[count++] = member;
     }
-    for (i = 0; i < graph->nodes; ++i)
+    for (i = 0; i < n; ++i)
         if (amd.kind[i] == GPROJI_AMD_DENSE) order[count++] = i;
-    GPROJ_ASSERT(count == graph->nodes);
+    GPROJ_ASSERT(count == n);
     if (flops) *flops = amd.flops + gproji_front_flops((double)total - amd.total, 0);
     gproji_pool_give_all(&pool);
     return true;
@@ -4194,68 +4151,59 @@ typedef struct gproji_condensation {
     int32_t *number; /* all nodes: index in `first` */
 } gproji_condensation;
 
-/* Chooses an independent set of nodes with at least 3 neighbours, all light, the lightest first: the normals of faces,
-   say. Chains and trees are left to the minimum degree ordering, which orders them without fill. */
-GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
-    int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
-    int64_t e;
-    unsigned char *taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1); /* chosen, or next to one */
+/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
+   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
+   size and shows the mesh. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
+    int32_t n = graph->nodes, start_of[GPROJI_CONDENSED_DEGREE + 3], i, k, d, left, *degree, *sorted, *mark;
+    int32_t *adjacent, *weight;
+    int64_t *start, room = graph->start[n], e, f, to = 0;
+    unsigned char *taken; /* chosen, or next to one that is */
+    memset(x, 0, sizeof *x);
+    gproji_pool_start(&x->pool, heap);
+    taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1);
     degree = gproji_take_ints(&x->pool, n);
     sorted = gproji_take_ints(&x->pool, n);
     x->first = gproji_take_ints(&x->pool, n);
     x->number = gproji_take_ints(&x->pool, n);
     if (x->pool.failed) return false;
-    memset(start, 0, sizeof start);
+    /* 1. Sorts nodes by degree, by counting. Only light ones with at least 3 neighbours are eligible, the normals of
+       faces, say: the minimum degree ordering eliminates chains and trees without fill. */
+    memset(start_of, 0, sizeof start_of);
     for (i = 0; i < n; ++i) {
-        int64_t weight = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
-        for (e = graph->start[i]; e < graph->start[i + 1] && weight <= GPROJI_CONDENSED_DEGREE; ++e)
-            weight += graph->weight[graph->adjacent[e]];
-        degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
-        start[degree[i] + 1]++;
+        int64_t sum = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
+        for (e = graph->start[i]; e < graph->start[i + 1] && sum <= GPROJI_CONDENSED_DEGREE; ++e)
+            sum += graph->weight[graph->adjacent[e]];
+        degree[i] = (int32_t)(sum <= GPROJI_CONDENSED_DEGREE ? sum : GPROJI_CONDENSED_DEGREE + 1);
+        start_of[degree[i] + 1]++;
     }
-    /* sort by degree, by counting */
-    for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start[d + 1] += start[d];
-    for (i = 0; i < n; ++i) sorted[start[degree[i]]++] = i;
+    for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start_of[d + 1] += start_of[d];
+    for (i = 0; i < n; ++i) sorted[start_of[degree[i]]++] = i;
+    /* 2. Chooses the lightest first, and numbers all nodes. */
     for (k = 0; k < n && degree[sorted[k]] <= GPROJI_CONDENSED_DEGREE; ++k) {
         i = sorted[k];
         if (taken[i]) continue;
         for (e = graph->start[i]; e < graph->start[i + 1]; ++e) taken[graph->adjacent[e]] = 1;
+        room += (e - graph->start[i]) * (e - graph->start[i] - 2); /* neighbours lose it, and gain at most each other */
         x->first[x->count++] = i;
     }
     for (i = 0; i < n; ++i) x->number[i] = -1;
     for (k = 0; k < x->count; ++k) x->number[x->first[k]] = k;
     for (i = 0, k = x->count; i < n; ++i)
         if (x->number[i] < 0) x->first[k] = i, x->number[i] = k++;
-    return true;
-}
-
-/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
-   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
-   size and shows the mesh. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
-    int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room, e, f, to = 0;
-    memset(x, 0, sizeof *x);
-    gproji_pool_start(&x->pool, heap);
-    if (!gproji_choose_condensed(x, graph)) return false;
-    left = graph->nodes - x->count;
-    room = graph->start[graph->nodes];
-    for (k = 0; k < x->count; ++k) { /* the neighbours lose this node, and gain at most each other */
-        int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
-        room += degree * (degree - 2);
-    }
+    left = n - x->count;
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
     adjacent = gproji_take_ints(&x->pool, room);
     weight = gproji_take_ints(&x->pool, left);
-    mark = gproji_take_ints(&x->pool, graph->nodes);
     if (x->pool.failed) return false;
-    for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
+    /* 3. Lists each neighbour, or in place of a condensed one the neighbours of that. */
+    mark = degree;
+    for (i = 0; i < n; ++i) mark[i] = -1;
     for (k = 0; k < left; ++k) {
         i = x->first[x->count + k];
         mark[i] = i;
         weight[k] = graph->weight[i];
         start[k] = to;
-        /* each neighbour, or the neighbours of a condensed one */
         for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
             int32_t j = graph->adjacent[e];
             bool condensed = x->number[j] < x->count;
@@ -4413,32 +4361,6 @@ typedef struct gproji_nd {
     gproji_band band;
 } gproji_nd;
 
-/* Takes the arrays: an entry for each node, or coordinate, and one more. */
-GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
-    gproji_nd_nodes *a = &nd->copy[0], *b = &nd->copy[1];
-    gproji_nd_halo *halo = &nd->halo;
-    gproji_nd_profile *profile = &nd->profile;
-    int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **const ints[] = {
-        &a->name,           &a->weight,         &a->inner,        &a->outer,        &a->x,          &a->y,
-        &b->name,           &b->weight,         &b->inner,        &b->outer,        &b->x,          &b->y,
-        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
-        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
-        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
-        &profile->halo_high};
-    size_t k;
-    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(pool, n + 1);
-    for (k = 0; k < 2; ++k) {
-        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-        nd->copy[k].adjacent = gproji_take_ints(pool, arcs);
-        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
-    }
-    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    return !pool->failed;
-}
-
 /* -- parts -- */
 
 /* Is b adjacent to node a and all other neighbours of a? mark: b for b and its neighbours, if mark[b] says so. */
@@ -4468,13 +4390,35 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* Chooses the nodes that are dissected and makes them the first part. total: the weight of all nodes. */
-GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
+/* Takes the arrays, chooses the nodes that are dissected, and makes them the first part. total: the weight of all nodes.
+   False when there is no memory. */
+GPROJI_INTERNAL bool gproji_nd_begin(gproji_nd *nd, gproji_pool *pool, int32_t total) {
     const gproji_graph *graph = nd->graph;
-    gproji_nd_nodes *c = &nd->copy[0];
-    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number = nd->number;
-    int64_t e, to = 0;
+    gproji_nd_nodes *c = &nd->copy[0], *other = &nd->copy[1];
+    gproji_nd_halo *halo = &nd->halo;
+    gproji_nd_profile *profile = &nd->profile;
+    int32_t **const ints[] = {
+        &c->name,           &c->weight,         &c->inner,        &c->outer,        &c->x,          &c->y,
+        &other->name,       &other->weight,     &other->inner,    &other->outer,    &other->x,      &other->y,
+        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
+        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
+        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
+        &profile->halo_high};
+    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number;
+    int64_t n = graph->nodes, e, to = 0;
     double weight = 0;
+    size_t k;
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(pool, n + 1);
+    for (k = 0; k < 2; ++k) {
+        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        nd->copy[k].adjacent = gproji_take_ints(pool, graph->start[n]);
+        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
+    }
+    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
+    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    if (pool->failed) return false;
+    number = nd->number;
     /* 1. Leave out dense and dominated nodes. Domination is transitive: a dominated node's heaviest dominator stays. */
     gproji_mark_dense(graph, total, nd->kind, GPROJI_ND_DENSE);
     for (a = 0; a < graph->nodes; ++a) {
@@ -4520,6 +4464,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
     nd->parts = tail > 0;
+    return true;
 }
 
 /* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number:
@@ -4807,30 +4752,6 @@ GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t lev
     return tail + 1;
 }
 
-/* Finds all levels by breadth-first search from the sink, against the residual arcs. Is the source reached? */
-GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
-    int32_t head = 0, tail = 0, i, c;
-    bool found = false;
-    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
-    for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
-        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    return found;
-}
-
 /* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
    or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
@@ -4859,8 +4780,28 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
-    int32_t *path = band->queue, i, k, depth;
-    if (!gproji_band_find_levels(band)) return false;
+    int32_t *path = band->queue, i, k, c, depth, head = 0, tail = 0;
+    bool found = false;
+    /* 1. Levels, by breadth-first search from the sink against the residual arcs. Is the source reached? */
+    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
+        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
+            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
+            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
+            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
+        }
+    }
+    if (!found) return false;
+    /* 2. Paths, depth first, from all nodes next to the source. */
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
@@ -5322,8 +5263,7 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
     memset(&nd, 0, sizeof nd);
     nd.heap = heap;
     nd.graph = graph;
-    nd.failed = !gproji_nd_take(&nd, &pool);
-    if (!nd.failed) gproji_nd_begin(&nd, total);
+    nd.failed = !gproji_nd_begin(&nd, &pool, total);
     while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
     if (!nd.failed) {
         /* Dominated nodes go right before the first node that dominates them, dense ones last. */
@@ -5445,45 +5385,22 @@ GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const in
     }
 }
 
-/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` positions are not adjacent. ancestor: shortcuts, work. */
-GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t apart, const int32_t *order,
-                                             const int32_t *position, int32_t *parent, int32_t *ancestor) {
-    int32_t k, i, above;
-    int64_t e;
-    for (k = 0; k < graph->nodes; ++k) {
-        parent[k] = ancestor[k] = -1;
-        if (k < apart) continue;
-        gproji_expect_neighbours(graph, order, k);
-        for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            for (i = position[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
-                above = ancestor[i];
-                ancestor[i] = k; /* compresses the path: later walks jump to k */
-                if (above < 0) parent[i] = k;
-            }
-        }
-    }
-}
-
-/* Lists the children in a forest, ascending. Returns the first root; the roots are siblings. */
-GPROJI_INTERNAL int32_t gproji_children(int32_t count, const int32_t *parent, int32_t *child, int32_t *sibling) {
-    int32_t k, roots = -1;
-    for (k = 0; k < count; ++k) child[k] = -1;
-    for (k = count - 1; k >= 0; --k) {
-        int32_t *list = parent[k] < 0 ? &roots : &child[parent[k]];
+/* sequence[k] = the k-th node of a forest in postorder; siblings ascend. child, sibling: work. */
+GPROJI_INTERNAL void gproji_postorder(int32_t nodes, const int32_t *parent, int32_t *child, int32_t *sibling,
+                                      int32_t *sequence) {
+    int32_t count = 0, root = -1, k;
+    /* 1. Lists of children; the roots are siblings. */
+    for (k = 0; k < nodes; ++k) child[k] = -1;
+    for (k = nodes - 1; k >= 0; --k) {
+        int32_t *list = parent[k] < 0 ? &root : &child[parent[k]];
         sibling[k] = *list;
         *list = k;
     }
-    return roots;
-}
-
-/* sequence[k] = the k-th node in postorder. Uses up the lists of children. */
-GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int32_t *child, const int32_t *sibling,
-                                      int32_t *sequence) {
-    int32_t count = 0, root;
-    for (root = roots; root >= 0; root = sibling[root]) {
+    /* 2. Walks down to a leaf, then up; the lists are used up. */
+    for (; root >= 0; root = sibling[root]) {
         int32_t at = root;
         for (;;) {
-            while (child[at] >= 0) { /* down to a leaf */
+            while (child[at] >= 0) {
                 int32_t down = child[at];
                 child[at] = sibling[down];
                 at = down;
@@ -5537,14 +5454,27 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
 }
 
 /* Finds elimination tree, column counts and their sums for the order in `out`, which becomes a postorder unless it must
-   be kept. apart: see gproji_elimination_tree. */
+   be kept. The first `apart` positions are not adjacent. */
 GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
-    int32_t n = out->nodes, i, k;
+    int32_t n = out->nodes, *ancestor = an->a, above, i, k;
     int64_t e;
     gproji_invert(n, out->order, out->position);
-    gproji_elimination_tree(graph, apart, out->order, out->position, an->parent, an->a);
+    /* 1. Elimination tree: parent[k] = min { i > k : L_ik != 0 }. */
+    for (k = 0; k < n; ++k) {
+        an->parent[k] = ancestor[k] = -1;
+        if (k < apart) continue;
+        gproji_expect_neighbours(graph, out->order, k);
+        for (e = graph->start[out->order[k]]; e < graph->start[out->order[k] + 1]; ++e) {
+            for (i = out->position[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
+                above = ancestor[i];
+                ancestor[i] = k; /* compresses the path: later walks jump to k */
+                if (above < 0) an->parent[i] = k;
+            }
+        }
+    }
+    /* 2. Column counts. */
     if (an->keep_order) {
         /* Without a postorder, walks along every row's subtree: O(entries of L). */
         int32_t *mark = an->a;
@@ -5561,7 +5491,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     } else {
         /* Renumbers by postorder: every subtree gets consecutive positions, and L keeps its entries. */
         int32_t *sequence = an->c, *renamed = an->d;
-        gproji_postorder(gproji_children(n, an->parent, an->a, an->b), an->parent, an->a, an->b, sequence);
+        gproji_postorder(n, an->parent, an->a, an->b, sequence);
         gproji_invert(n, sequence, renamed);
         for (k = 0; k < n; ++k) {
             int32_t up = an->parent[sequence[k]];
@@ -5573,7 +5503,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
         gproji_invert(n, out->order, out->position);
         gproji_column_counts(an);
     }
-    /* Sums entries and flops for exact L, without the zeros that relaxed supernodes add. */
+    /* 3. Sums entries and flops for exact L, without the zeros that relaxed supernodes add. */
     out->exact_entries = 0;
     out->flops = 0;
     for (k = 0; k < n; ++k) {
@@ -5722,8 +5652,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t n = out->nodes, count = an->supernodes, k, f, at = 0, column = 0;
     int32_t *sequence = an->a, *number = an->b, *order = an->c;
-    int32_t roots = gproji_children(count, an->super_parent, an->child, an->sibling);
-    gproji_postorder(roots, an->super_parent, an->child, an->sibling, sequence);
+    gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
     gproji_invert(count, sequence, number);
@@ -5831,33 +5760,11 @@ typedef struct gproji_family {
     int32_t before, after; /* in the ring */
 } gproji_family;
 
-/* Gives the children of front f the first gap that is large enough; `update` becomes the distance to their far ends. */
-GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
-    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, level, c;
-    int64_t size = 0;
-    for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-        size += gproji_update_entries(out->front[c].update_rows);
-    if (size == 0) return;
-    for (; family[after].low - family[before].high < size; after = family[after].after) {
-        before = after;
-        if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
-        if (after == ring) break;
-    }
-    family[f].before = before, family[f].after = after;
-    family[before].after = family[after].before = f;
-    family[f].low = family[f].high = family[before].high;
-    /* Children as scheduled: backwards in time the last one goes first. */
-    for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
-        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-            if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
-                out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
-}
-
 /* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1 zeros. */
 GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
                                             const int32_t *task, gproji_family *family) {
     int64_t at = base, most;
-    int32_t ring = out->fronts, k, c;
+    int32_t ring = out->fronts, level, k, c;
     /* 1. Panels follow each other. */
     for (k = begin; k < end; ++k) {
         gproji_front *front = &out->front[out->schedule[k]];
@@ -5872,8 +5779,27 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     most = at;
     for (k = end - 1; k >= begin; --k) {
         int32_t f = out->schedule[k], parent = out->front[f].parent;
+        int32_t before = ring, after = family[ring].after, tries = 0;
         gproji_family *own = parent < 0 ? NULL : &family[parent];
-        gproji_place_family(out, f, task, family);
+        int64_t size = 0;
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            size += gproji_update_entries(out->front[c].update_rows);
+        if (size > 0) {
+            /* The children get the first gap that is large enough, and in `update` the distances to their far ends. */
+            for (; family[after].low - family[before].high < size; after = family[after].after) {
+                before = after;
+                if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
+                if (after == ring) break;
+            }
+            family[f].before = before, family[f].after = after;
+            family[before].after = family[after].before = f;
+            family[f].low = family[f].high = family[before].high;
+        }
+        /* As scheduled: backwards in time the last child goes first. */
+        for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
+            for (c = size > 0 ? out->front[f].child : -1; c >= 0; c = out->front[c].sibling)
+                if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
+                    out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
         if (at + family[f].high > most) most = at + family[f].high;
         at = out->front[f].panel;
         if (!own || own->high == own->low) continue; /* the parent belongs to another task */
@@ -5907,7 +5833,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     }
     for (f = 0; f < count; ++f)
         if (parent[f] >= 0) flops[parent[f]] += flops[f];
-    gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
+    gproji_postorder(count, parent, an->child, an->sibling, sequence);
     /* 2. Tasks: on each level whole subtrees within a share of all flops, small ones together. Threads on a front pass
        it to each other, which pays for large fronts only: hence the second level. Small problems are one task. */
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
@@ -6088,7 +6014,7 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
 }
 
 GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
-    gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c);
+    gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c, NULL);
     if (!c) return NULL;
     if (host) c->parallel = host->parallel;
     c->kernels = gproji_kernels_of(0);
@@ -6220,36 +6146,6 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     return gproji_fail_memory(&c->error);
 }
 
-/* Checks that the arrays are a matrix in compressed columns. */
-GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, const int64_t *start,
-                                                 const int32_t *row) {
-    int32_t j;
-    int64_t p;
-    if (n < 0 || n > GPROJI_COLUMNS_MAX)
-        return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "a matrix cannot have %d columns", n);
-    if (n == 0) return GPROJ_OK;
-    if (!start)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the column starts are missing");
-    if (start[0] != 0)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0,
-                           "the first column starts at %l, not 0", start[0]);
-    for (j = 0; j < n; ++j)
-        if (start[j + 1] < start[j])
-            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j,
-                               "column %d ends before it starts", j);
-    if (start[n] > INT64_MAX / 64)
-        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
-    if (!row && start[n] > 0)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the row indices are missing");
-    for (j = 0; j < n; ++j)
-        for (p = start[j]; p < start[j + 1]; ++p)
-            if (row[p] < 0 || row[p] >= n)
-                return gproji_fail(&c->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
-                                   "column %d has an entry in row %d, which is not in 0..%d", j, row[p], n - 1);
-    return GPROJ_OK;
-}
-
 /* From a matrix in compressed columns to a graph with few nodes. */
 typedef struct gproji_compression {
     gproji_pool pool;
@@ -6309,8 +6205,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
     for (k = 0; x->order && k < n; ++k) {
         j = given ? (options->permutation ? options->permutation[k] : -1) : k;
-        if (j < 0 || j >= n || x->mark[j] >= 0)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the order given is no permutation");
+        if (j < 0 || j >= n || x->mark[j] >= 0) return gproji_refuse(error, "the order given is no permutation");
         x->mark[j] = x->order[k] = j;
     }
     return GPROJ_OK;
@@ -6426,11 +6321,32 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     gproj_cholesky_options choice;
     gproji_compression x;
     gproj_code code;
+    int32_t j;
+    int64_t p;
     if (!c) return GPROJ_ERROR_ARGUMENT;
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
-    code = gproji_cholesky_check(c, n, start, row);
-    if (code != GPROJ_OK) return code;
+    /* 1. Are the arrays a matrix in compressed columns? */
+    if (n < 0) return gproji_refuse(&c->error, "a matrix cannot have %d columns", n);
+    if (n > GPROJI_COLUMNS_MAX)
+        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "a matrix cannot have %d columns", n);
+    if (n > 0 && !start) return gproji_refuse(&c->error, "the column starts are missing");
+    if (n > 0 && start[0] != 0)
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0,
+                           "the first column starts at %l, not 0", start[0]);
+    for (j = 0; j < n; ++j)
+        if (start[j + 1] < start[j])
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j,
+                               "column %d ends before it starts", j);
+    if (n > 0 && start[n] > INT64_MAX / 64)
+        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
+    if (n > 0 && !row && start[n] > 0) return gproji_refuse(&c->error, "the row indices are missing");
+    for (j = 0; j < n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p)
+            if (row[p] < 0 || row[p] >= n)
+                return gproji_fail(&c->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
+                                   "column %d has an entry in row %d, which is not in 0..%d", j, row[p], n - 1);
+    /* 2. Compresses it further, analyses the nodes' graph, and places the entries. */
     memset(&choice, 0, sizeof choice);
     if (options) choice = *options;
     memset(&x, 0, sizeof x);
@@ -6521,19 +6437,29 @@ typedef struct gproji_gathering {
     int32_t chunk;    /* columns in one task */
 } gproji_gathering;
 
-/* Extend-adds the children's update matrices to one chunk. A task. */
+/* Clears one chunk, and extend-adds the children's update matrices to it right after: both in the cache. A task. */
 GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
     const gproj_cholesky *c = gathering->c;
+    const gproji_panel *panel = gathering->panel;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t i, from = gathering->from + index * gathering->chunk;
-    int32_t to = gproji_min(from + gathering->chunk, gathering->to);
-    if (from < gathering->panel->shape.end || !gathering->panel->fresh)
-        gproji_clear_columns(gathering->panel, from, to); /* right before the additions: both in the cache */
+    int32_t from = gathering->from + index * gathering->chunk, to = gproji_min(from + gathering->chunk, gathering->to);
+    int32_t pivot_end = panel->shape.end, begin = gproji_max(from, panel->shift), end = gproji_min(to, pivot_end), i;
+    if (begin < end) {
+        ptrdiff_t at = gproji_shape_offset(panel->shape, begin) + gproji_shape_first(panel->shape, begin);
+        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
+        gproji_clear(panel->values + at, next - at);
+    }
+    begin = gproji_max(begin, pivot_end) - pivot_end, end = to - pivot_end;
+    if (begin < end && (from < pivot_end || !panel->fresh)) {
+        ptrdiff_t at = gproji_update_offset(panel->update_rows, begin) + gproji_strip_begin(begin);
+        ptrdiff_t next = gproji_update_offset(panel->update_rows, end) + gproji_strip_begin(end);
+        gproji_clear(panel->update + at, next - at);
+    }
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
-        add.panel = gathering->panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
         add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
         gproji_add_columns(&add, from, to);
     }
@@ -6745,7 +6671,7 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
         return GPROJ_FACTOR_FAILED;
     }
     if (!values && c->entries.count > 0) {
-        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "factor: the values are missing");
+        gproji_refuse(&c->error, "factor: the values are missing");
         return GPROJ_FACTOR_FAILED;
     }
     if (!gproji_cholesky_take_numeric(c)) return GPROJ_FACTOR_FAILED;
@@ -6762,8 +6688,7 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
         return gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "solve: there is no factor to solve with");
     if (count < 0 || (count > 0 && c->symbolic.columns > 0 && (!b || !x)))
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "solve: %d right-hand sides, or an array is missing", count);
+        return gproji_refuse(&c->error, "solve: %d right-hand sides, or an array is missing", count);
     if (c->symbolic.columns == 0) return GPROJ_OK;
     for (r = 0; r < count; r += c->batch) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
@@ -6805,7 +6730,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
     }
     if (n == 0) return 0;
     if (!start || !row || !values || !b || !x) {
-        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "refine: an array is missing");
+        gproji_refuse(&c->error, "refine: an array is missing");
         return HUGE_VAL;
     }
     GPROJ_ASSERT(c->batch > 1);
@@ -6925,12 +6850,12 @@ GPROJI_INTERNAL bool gproji_squares_finite(double x) { return gproji_is_finite(x
 GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
     int32_t i, j;
     int64_t e;
-    if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
+    if (!p) return gproji_refuse(error, "least squares: there is no problem");
     if (p->rows < 0 || p->columns < 0 || p->columns > GPROJI_COLUMNS_MAX || p->rows > GPROJI_ROWS_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
                            p->rows, p->columns);
     if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: an array is missing");
+        return gproji_refuse(error, "least squares: an array is missing");
     if (!gproji_squares_finite(p->damping) || p->damping < 0)
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "least squares: the damping is negative or not a number");
@@ -6949,8 +6874,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
                                "least squares: column %d ends before it starts", j);
         if (p->start[j + 1] > p->start[j] && (!p->row || !p->value))
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "least squares: the rows or the values of the entries are missing");
+            return gproji_refuse(error, "least squares: the rows or the values of the entries are missing");
         for (e = p->start[j]; e < p->start[j + 1]; ++e) {
             if (p->row[e] < 0 || p->row[e] >= p->rows)
                 return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
@@ -7381,13 +7305,47 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     return a > 1e-6;
 }
 
-/* Runs the interior-point method, and polishes whenever it seems to know the active bounds. */
-GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
+/* -- the solution -- */
+
+/* Judges a first candidate, x or 0, moved between the bounds. */
+GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j)
+        s->trial[j] = s->interior.x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
+    s->best_kkt = HUGE_VAL;
+    return gproji_squares_judge(s);
+}
+
+/* Solves from the start x, cheapest attempts first. */
+GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     const gproji_interior *in = &s->interior;
     double tolerance = 1e-4, doubt = 0.02, first = 0;
     bool moves = true;
     int32_t j, c;
-    if (!gproji_squares_interior(s)) return false;
+    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
+       within the bounds that is nearest to 0. */
+    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
+    s->scale = gproji_squares_gradient(s, s->trial);
+    if (!(s->scale > 0)) s->scale = 1;
+    if (gproji_squares_propose(s, x)) return;
+    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
+    /* 2. A good start knows the active bounds. */
+    if (s->best_kkt <= 1e-3) {
+        for (j = 0; j < s->columns; ++j) {
+            double at = s->trial[j];
+            if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, at) > 0) continue;
+            if (at <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+            if (at >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+        }
+        if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+    }
+    /* 3. The minimum without bounds. */
+    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
+    memcpy(s->trial, in->x, (size_t)s->columns * sizeof(double));
+    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || in->pairs == 0) return;
+    gproji_squares_free_all(s);
+    /* 4. The interior-point method; polishes whenever it seems to know the active bounds. */
+    if (!gproji_squares_interior(s)) return;
     while (s->code == GPROJ_OK && s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
         double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
         bool last = !moves || gap <= 1e-22 * first, clear;
@@ -7407,54 +7365,14 @@ GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
                 s->state[j] = in->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
                 s->trial[j] = in->sign[c] > 0 ? s->lower[j] : s->upper[j];
             }
-            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return true;
+            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
             gproji_squares_free_all(s);
-            if (last) return false;
+            if (last) return;
             tolerance *= 1e-2, doubt *= 0.1;
             gproji_squares_imbalance(s); /* `gradient` is the polish's */
         }
         moves = gproji_squares_advance(s);
     }
-    return false;
-}
-
-/* -- the solution -- */
-
-/* Judges a first candidate, x or 0, moved between the bounds. */
-GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
-    int32_t j;
-    for (j = 0; j < s->columns; ++j)
-        s->trial[j] = s->interior.x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
-    s->best_kkt = HUGE_VAL;
-    return gproji_squares_judge(s);
-}
-
-/* Solves from the start x, cheapest attempts first. */
-GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
-    int32_t j;
-    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
-       within the bounds that is nearest to 0. */
-    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
-    s->scale = gproji_squares_gradient(s, s->trial);
-    if (!(s->scale > 0)) s->scale = 1;
-    if (gproji_squares_propose(s, x)) return;
-    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
-    /* 2. A good start knows the active bounds. */
-    if (s->best_kkt <= 1e-3) {
-        for (j = 0; j < s->columns; ++j) {
-            double at = s->trial[j];
-            if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, at) > 0) continue;
-            if (at <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
-            if (at >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
-        }
-        if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
-    }
-    /* 3. The minimum without bounds, then the interior-point method. */
-    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
-    memcpy(s->trial, s->interior.x, (size_t)s->columns * sizeof(double));
-    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || s->interior.pairs == 0) return;
-    gproji_squares_free_all(s);
-    gproji_squares_iterate(s);
 }
 
 /* Is `best` a solution, as far as rounding can tell? Residual and gradient are at `best`. */
@@ -7962,7 +7880,7 @@ struct gproj_system {
 /* -- life and building -- */
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
-    gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system));
+    gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system), NULL);
     if (!s) return NULL;
     gproji_error_clear(&s->error);
     gproji_pool_start(&s->taken, &s->own);
@@ -8127,9 +8045,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     int32_t first, i;
     if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
-                    block);
+        gproji_refuse(&s->error,
+                      "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
+                      block);
         return -1;
     }
     if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
@@ -8323,22 +8241,6 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
     return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
-/* Reports the first term that does not fit this system. */
-GPROJI_INTERNAL void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
-                                         const gproj_term *terms) {
-    int32_t t;
-    for (t = 0; t < count; ++t) {
-        if (terms[t].i >= 0 && terms[t].i < s->variable_count && terms[t].j >= -1 && terms[t].j < s->variable_count)
-            continue;
-        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
-                    terms[t].i, terms[t].j);
-        return;
-    }
-    gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
-                "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
-}
-
 /* Counts the variables that the terms name. */
 GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
     int32_t t, named = 0;
@@ -8370,21 +8272,25 @@ GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) 
     return false;
 }
 
+/* Grows the arrays for further rows, terms and locals. */
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+    gproji_group_room *room = &g->capacity;
+    rows += (size_t)g->row_count + 1; /* with the one that ends them */
+    terms += g->term_count, locals += gproji_local_count(g);
+    terms += terms == 0, locals += locals == 0; /* a row without terms has arrays, too */
+    g->row = (gproji_row *)gproji_grow(&s->own, g->row, &room->row, rows, sizeof *g->row);
+    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &room->term, terms, sizeof *g->term);
+    g->local.variable = (int32_t *)gproji_grow(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+    if (g->share) g->share = (gproji_share *)gproji_grow(&s->own, g->share, &room->share, rows, sizeof *g->share);
+    return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= rows);
+}
+
 /* Makes this room, or fails. */
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
-    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
-    gproji_group_room *room = &g->capacity;
     if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
         locals > GPROJI_TERMS_MAX - gproji_local_count(g))
         return gproji_refuse_rows(s, g);
-    terms += g->term_count, locals += gproji_local_count(g);
-    terms += terms == 0, locals += locals == 0; /* a row without terms has arrays, too */
-    g->row = (gproji_row *)gproji_grow(&s->own, g->row, &room->row, wanted, sizeof *g->row);
-    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &room->term, terms, sizeof *g->term);
-    g->local.variable = (int32_t *)gproji_grow(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
-    if (g->share) g->share = (gproji_share *)gproji_grow(&s->own, g->share, &room->share, wanted, sizeof *g->share);
-    if (room->term < terms || room->local < locals || room->row < wanted || (g->share && room->share < wanted))
-        gproji_fail_memory(&s->error);
+    if (!gproji_reserve_rows(s, g, rows, terms, locals)) gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
 
@@ -8431,8 +8337,14 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
+    for (t = 0; !valid && t < count; ++t)
+        if ((uint32_t)terms[t].i >= end || (uint32_t)terms[t].j + 1 > end)
+            gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
+                        "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
+                        terms[t].i, terms[t].j);
     if (!valid) {
-        gproji_refuse_terms(s, g, count, terms);
+        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
@@ -8545,6 +8457,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                                           double constant) {
     gproji_group *g;
     uint32_t t, count;
+    bool finite = gproji_is_finite(constant);
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row))
@@ -8552,7 +8465,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            group);
     g = &s->group[group];
     count = g->row[row].terms;
-    if (!gproji_is_finite(constant) || (coefficients && !gproji_are_finite(coefficients, count)))
+    for (t = 0; coefficients && t < count; ++t) finite &= gproji_is_finite(coefficients[t]);
+    if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g))
@@ -9358,37 +9272,6 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
 /* Solves for the step with the factor of A. */
 GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* residual = -gradient - A dx. Does U m balance it, as it should? epsilon: in A. */
-GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
-    double *residual = s->wide.residual, *balance = s->wide.balance, left = 0, size = 0;
-    gproji_row_name at = {0, -1};
-    const gproji_row *row;
-    int32_t i, r, v;
-    /* 1. A dx, from all narrow rows that act. */
-    for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * s->vector.step[v];
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            row = &g->row[r];
-            if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, s->vector.step), residual);
-        }
-    }
-    /* 2. U m at this step. */
-    memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
-    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        const gproji_group *g = &s->group[at.group];
-        gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->vector.step)), balance);
-    }
-    /* 3. Their difference, against the right-hand side. */
-    for (v = 0; v < s->variable_count; ++v) {
-        residual[v] = -s->vector.gradient[v] - residual[v];
-        left = gproji_fmax(left, fabs(residual[v] - balance[v]));
-        size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
-    }
-    return left <= 1e-9 * size;
-}
-
 /* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
    product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
    the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
@@ -9397,15 +9280,41 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
    |U U'||dx|, as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat
    narrow ones, or each other. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
-    double *residual = s->wide.residual;
-    int32_t v;
+    double *residual = s->wide.residual, *balance = s->wide.balance, *step = s->vector.step;
+    const gproji_row *row;
+    int32_t i, r, v;
     if (wide == 0 || parts <= gproji_parts_most) return;
-    while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+    for (; rounds > 0; --rounds) {
+        gproji_row_name at = {0, -1};
+        double left = 0, size = 0;
+        /* 1. A dx, from all narrow rows that act. */
+        for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * step[v];
+        for (i = 0; i < s->group_count; ++i) {
+            const gproji_group *g = &s->group[i];
+            for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+                row = &g->row[r];
+                if (row->wide || !row->active) continue;
+                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, step), residual);
+            }
+        }
+        /* 2. U m at this step, which should balance the residual -gradient - A dx. */
+        memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
+        while ((row = gproji_next_wide_row(s, &at)) != NULL) {
+            const gproji_group *g = &s->group[at.group];
+            gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, step)), balance);
+        }
+        for (v = 0; v < s->variable_count; ++v) {
+            residual[v] = -s->vector.gradient[v] - residual[v];
+            left = gproji_fmax(left, fabs(residual[v] - balance[v]));
+            size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
+        }
+        if (left <= 1e-9 * size) return;
+        /* 3. A correction. */
         gproji_wide_values(s, true);
         gproji_cholesky_forward(s->cholesky, 1, residual, residual);
         gproji_wide_correct(s, wide, residual);
         gproji_cholesky_backward(s->cholesky, residual, residual);
-        for (v = 0; v < s->variable_count; ++v) s->vector.step[v] += residual[v];
+        for (v = 0; v < s->variable_count; ++v) step[v] += residual[v];
     }
 }
 
@@ -9828,15 +9737,23 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     return auxiliary;
 }
 
-/* Places the locals in all rows (see the section's invariant), and notes nodes that turn local unknowns. at: work, by
-   nodes. */
-GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
+/* Step 4, for multipliers: places W, and the locals in all rows (see the section's invariant). */
+GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
     const gproji_schur *d = &s->schur;
+    int32_t *at, *sequence, e;
     int64_t k, l;
-    int32_t e;
-    memset(at, 0, (size_t)s->nodes.count * sizeof *at);
-    for (k = d->own_start[0]; k < d->own_start[s->nodes.count]; ++k) gproji_schur_place_row(s, d->row[k], at);
-    for (e = 0; e < d->elements; ++e) {
+    gproji_pool pool;
+    bool done;
+    gproji_pool_start(&pool, &s->own);
+    at = gproji_take_ints(&pool, gproji_max(s->variable_count, d->first[d->elements]));
+    sequence = gproji_take_ints(&pool, s->nodes.count);
+    done = gproji_take_local_places(s) && gproji_schur_take(s) && !pool.failed;
+    if (done) {
+        gproji_schur_place_matrix(s, sequence, at);
+        memset(at, 0, (size_t)s->nodes.count * sizeof *at);
+        for (k = d->own_start[0]; k < d->own_start[s->nodes.count]; ++k) gproji_schur_place_row(s, d->row[k], at);
+    }
+    for (e = 0; done && e < d->elements; ++e) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
         for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
@@ -9845,21 +9762,6 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
             if (!gproji_schur_place_row(s, d->row[k], at)) continue;
             for (l = row->local; l < row[1].local; ++l) d->turns[s->nodes.of[g->local.variable[l]]] = 1;
         }
-    }
-}
-
-/* Step 4, for multipliers. */
-GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
-    gproji_pool pool;
-    int32_t *at, *sequence;
-    bool done;
-    gproji_pool_start(&pool, &s->own);
-    at = gproji_take_ints(&pool, gproji_max(s->variable_count, s->schur.first[s->schur.elements]));
-    sequence = gproji_take_ints(&pool, s->nodes.count);
-    done = gproji_take_local_places(s) && gproji_schur_take(s) && !pool.failed;
-    if (done) {
-        gproji_schur_place_matrix(s, sequence, at);
-        gproji_schur_place_locals(s, at);
     }
     gproji_pool_give_all(&pool);
     return done;
@@ -9924,16 +9826,6 @@ GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
     for (i = size - 1; i >= 0; --i) {
         double sum = 0;
         for (k = 0; k <= i; ++k) sum += root[i * size + k] * x[k];
-        x[i] = sum;
-    }
-}
-
-/* x = K'x */
-GPROJI_INLINED void gproji_unwhiten(int32_t size, const double *root, double *x) {
-    int32_t i, k;
-    for (i = 0; i < size; ++i) {
-        double sum = 0;
-        for (k = i; k < size; ++k) sum += root[k * size + i] * x[k];
         x[i] = sum;
     }
 }
@@ -10413,8 +10305,12 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     const gproji_coupling *end = d->w.coupling + d->w.front_start[front + 1];
     const int32_t *at = d->w.entry_at + d->w.front_entry[front];
     double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
-    int32_t j;
-    if (column) gproji_panel_columns(panel, to, column);
+    int32_t j, i;
+    for (j = 0; column && j < to; j += GPROJI_BLOCK) { /* the table: columns of a block are a stride apart */
+        double *first = gproji_panel_column(panel, j);
+        ptrdiff_t stride = gproji_column_stride(panel, j);
+        for (i = 0; i < GPROJI_BLOCK; ++i, first += stride) column[j + i] = first;
+    }
     for (; node < end; at += node++->count) {
         const double *w = d->w.value + node->value, *later = d->w.value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
@@ -10456,13 +10352,18 @@ GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t s
     const gproji_schur *d = &s->schur;
     const double *w = d->w.value + d->w.value_start[v];
     double *u = s->vector.step + s->nodes.first[v];
+    const double *root = d->root + d->root_start[v]; /* K, a lower triangle by rows */
     int64_t i;
     int32_t k, p;
     for (i = d->w.entry_start[v]; i < d->w.entry_start[v + 1]; ++i, w += size)
         for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->w.entry[i]];
     for (k = 0; k < s->wide.acting; ++k)
         for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->nodes.first[v] + p];
-    gproji_unwhiten(size, d->root + d->root_start[v], u);
+    for (p = 0; p < size; ++p) {
+        double sum = 0;
+        for (k = p; k < size; ++k) sum += root[k * size + p] * u[k];
+        u[p] = sum;
+    }
 }
 
 /* Moves one chunk of nodes. */
@@ -12983,7 +12884,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
 }
 
 GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = (gproji_mesh_object *)gproji_begin_object(host, sizeof(gproji_mesh_object), error);
+    gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object), error);
     if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
 }
@@ -14263,7 +14164,7 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
 /* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
                                                     const gproj_host *host) {
-    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
+    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
     gproj_stencil *stencil;
     if (!object) return NULL;
     stencil = &object->stencil;
@@ -15038,7 +14939,7 @@ GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
 
 /* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
-    gproj_curve *curve = (gproj_curve *)gproji_begin_object(host, sizeof(gproj_curve), error);
+    gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve), error);
     if (!curve) return NULL;
     gproji_pool_start(&curve->pool, &curve->heap);
     curve->segment_count = segment_count;
@@ -15408,7 +15309,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
     if (!mesh->face_count || gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
-    surface = (gproj_surface *)gproji_begin_object(host, sizeof(gproj_surface), error);
+    surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface), error);
     if (!surface) return NULL;
     keep = &surface->pool;
     gproji_pool_start(keep, &surface->heap);
@@ -15943,7 +15844,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     size_t vertices, halfedges, faces;
     int32_t polylines, i;
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
-    object = (gproji_edit_object *)gproji_begin_object(host, sizeof *object, error);
+    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
     s = &object->now;
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
@@ -19139,7 +19040,7 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
 static const double gproji_least_edge = 1e-305;
 
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
-    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
+    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form), NULL);
     int32_t i, k, first, ring = 1;
     double edge;
     if (!form) return NULL;
@@ -19346,7 +19247,7 @@ GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t
                                          size_t locals) {
     gproj_system *s = form->system;
     if (group >= 0 &&
-        !(gproji_reserve_variables(s, variables) && gproji_make_room(s, &s->group[group], rows, terms, locals)))
+        !(gproji_reserve_variables(s, variables) && gproji_reserve_rows(s, &s->group[group], rows, terms, locals)))
         gproji_fail_memory(&s->error);
 }
 
@@ -24416,7 +24317,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     gproj_code code;
     gproji_error_clear(error);
     if (gproji_check_drag(form, handles, options, error) != GPROJ_OK) return NULL;
-    drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag);
+    drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag, NULL);
     if (!drag) {
         gproji_fail_memory(error);
         return NULL;
