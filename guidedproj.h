@@ -2367,7 +2367,7 @@ GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
     return heap;
 }
 
-/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_grant refuses. */
+/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_retake refuses. */
 GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
@@ -2376,68 +2376,55 @@ GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
 /* a + b, or SIZE_MAX if that is more. */
 GPROJI_INTERNAL size_t gproji_add_bytes(size_t a, size_t b) { return b < SIZE_MAX - a ? a + b : SIZE_MAX; }
 
-/* May the heap hold `more` bytes in place of `less` of those it has? */
-GPROJI_INTERNAL bool gproji_grant(const gproji_heap *heap, size_t less, size_t more) {
-    size_t held = heap->account.used - less;
-    if (more > SIZE_MAX / 2 || held > SIZE_MAX / 2) return false;
-    return heap->hook.limit == 0 || held + more <= heap->hook.limit;
-}
-
-GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more) {
-    heap->account.used = heap->account.used - less + more;
-    if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
-}
-
-/* Takes a block with undefined contents. NULL when there is no memory. */
-GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
-    size_t bytes = gproji_bytes(count, size);
-    void *block;
-    if (heap->foretold) {
-        *heap->foretold = gproji_add_bytes(*heap->foretold, bytes);
-        return NULL;
-    }
-    heap->account.allocations++;
-    if (!gproji_grant(heap, 0, bytes)) return NULL;
-    block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
-    if (block) gproji_account(heap, 0, bytes);
-    return block;
-}
-
-GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
-    void *block = gproji_take(heap, count, size);
-    if (block) memset(block, 0, count * size);
-    return block;
-}
-
 /* Gives a block back; NULL is allowed. */
 GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
     size_t bytes = gproji_bytes(count, size);
     if (!block) return;
-    gproji_account(heap, bytes, 0);
+    heap->account.used -= bytes;
     if (!heap->hook.allocate)
         free(block);
     else if (heap->hook.release)
         heap->hook.release(heap->hook.user, block, bytes);
 }
 
-/* Changes a block's count, keeping elements that fit; `block` may be NULL. NULL: no memory; the old block stays. */
+/* Changes a block's count, keeping elements that fit; a NULL block is taken. NULL: no memory; the old block stays. */
 GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
-    size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
+    const gproj_allocator *hook = &heap->hook;
+    size_t less = block ? gproji_bytes(old_count, size) : 0, more = gproji_bytes(new_count, size);
+    size_t rest = heap->account.used - less;
     void *moved;
-    if (!block) return gproji_take(heap, new_count, size);
-    if (heap->hook.allocate && !heap->hook.reallocate) {
-        moved = gproji_take(heap, new_count, size);
+    if (heap->foretold && !block) {
+        *heap->foretold = gproji_add_bytes(*heap->foretold, more);
+        return NULL;
+    }
+    if (block && hook->allocate && !hook->reallocate) {
+        moved = gproji_retake(heap, NULL, 0, new_count, size);
         if (!moved) return NULL;
-        memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
+        memcpy(moved, block, less < more ? less : more);
         gproji_give(heap, block, old_count, size);
         return moved;
     }
     heap->account.allocations++;
-    if (!gproji_grant(heap, old_bytes, new_bytes)) return NULL;
-    moved = heap->hook.allocate ? heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes)
-                                : realloc(block, new_bytes);
-    if (moved) gproji_account(heap, old_bytes, new_bytes);
+    if (more > SIZE_MAX / 2 || rest > SIZE_MAX / 2 || (hook->limit > 0 && rest + more > hook->limit)) return NULL;
+    if (!hook->allocate)
+        moved = realloc(block, more);
+    else
+        moved = block ? hook->reallocate(hook->user, block, less, more) : hook->allocate(hook->user, more);
+    if (!moved) return NULL;
+    heap->account.used = rest + more;
+    if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
     return moved;
+}
+
+/* Takes a block with undefined contents. NULL when there is no memory. */
+GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
+    return gproji_retake(heap, NULL, 0, count, size);
+}
+
+GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
+    void *block = gproji_take(heap, count, size);
+    if (block) memset(block, 0, count * size);
+    return block;
 }
 
 /* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
@@ -6525,15 +6512,6 @@ GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_fr
     }
 }
 
-/* Keeps the front's unknowns, and the partial right-hand side for its parent. */
-GPROJI_INTERNAL void gproji_leave_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
-                                        const double *z) {
-    const double *pivots = z + gproji_panel_shift(front->width);
-    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns;
-    memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
-    memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof(double));
-}
-
 /* -- sweeps over all fronts -- */
 
 /* Goes up through one task's fronts: eliminates them if there is a matrix to load, and solves L y = b with each, two
@@ -6542,10 +6520,11 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     const int32_t *level = sy->level_start + c->sweep.level;
-    int32_t task = level[0] + index, k, end = sy->task_start[task + 1], side, failed = -1;
-    double *z = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, *y = z + sy->most_rows;
+    int32_t task = level[0] + index, k, end = sy->task_start[task + 1], first, side, failed = -1;
+    double *rows_of[2]; /* of the two right-hand sides */
     /* A level with one task lends it all threads; else each has a task. */
     const gproj_parallel *parallel = c->sweep.level > 0 && level[1] - level[0] == 1 ? &c->parallel : NULL;
+    rows_of[0] = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, rows_of[1] = rows_of[0] + sy->most_rows;
     for (k = sy->task_start[task]; k < end; ++k) {
         const gproji_front *front = &sy->front[sy->schedule[k]];
         gproji_panel panel = gproji_front_panel(c, front);
@@ -6563,13 +6542,16 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
             if (front->below > 0) gproji_panel_update(parallel, &panel);
             if (panel.fresh) gproji_gather(c, sy->schedule[k], &panel, parallel, pivot_end, rows);
         }
-        for (side = 0; side < c->sides; side += 2) { /* a kernel reads L once for two */
-            bool two = side + 1 < c->sides;
-            gproji_enter_front(c, front, side, z);
-            if (two) gproji_enter_front(c, front, side + 1, y);
-            gproji_panel_forward(&panel, z, two ? y : NULL);
-            gproji_leave_front(c, front, side, z);
-            if (two) gproji_leave_front(c, front, side + 1, y);
+        for (first = 0; first < c->sides; first += 2) { /* a kernel reads L once for two */
+            int32_t last = gproji_min(first + 2, c->sides);
+            for (side = first; side < last; ++side) gproji_enter_front(c, front, side, rows_of[side - first]);
+            gproji_panel_forward(&panel, rows_of[0], last - first > 1 ? rows_of[1] : NULL);
+            for (side = first; side < last; ++side) { /* keeps unknowns, and the partial right-hand side for the parent */
+                const double *pivots = rows_of[side - first] + panel.shift;
+                double *x = c->solution + (size_t)side * (size_t)sy->columns;
+                memcpy(x + front->first, pivots, (size_t)front->width * sizeof *x);
+                memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof *x);
+            }
         }
     }
     c->failed[task] = failed;
@@ -8095,14 +8077,13 @@ GPROJ_API gproj_schedule gproj_keep(double weight) { return gproji_make_schedule
 GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) { return gproji_make_schedule(weight, last); }
 GPROJ_API gproj_schedule gproj_guide(double weight) { return gproji_make_schedule(weight, GPROJ_LAST_GUIDING); }
 
-GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule s) {
-    return s.weight >= 0 && s.weight <= gproji_weight_most && s.decay >= 0 && s.decay <= 1 &&
-           s.last >= GPROJ_LAST_GUIDING && (s.weight == 0 || (s.decay > 0 && s.last != 0));
-}
-
-GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
-    return gproji_fail(
-        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+/* Refuses a schedule for the group with this name if it is not valid. */
+GPROJI_INTERNAL gproj_code gproji_check_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
+    if (schedule.weight >= 0 && schedule.weight <= gproji_weight_most && schedule.decay >= 0 && schedule.decay <= 1 &&
+        schedule.last >= GPROJ_LAST_GUIDING && (schedule.weight == 0 || (schedule.decay > 0 && schedule.last != 0)))
+        return GPROJ_OK;
+    return gproji_refuse(
+        &s->error,
         "the schedule of group '%s' (weight %g, decay %g, last %d) needs 0 <= weight <= 1e50, 0 < decay <= 1, "
         "last >= 1: make it by gproj_keep, gproj_fade or gproj_guide",
         name, schedule.weight, schedule.decay, schedule.last);
@@ -8116,10 +8097,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
         return -1;
     }
-    if (!gproji_schedule_is_valid(group->schedule)) {
-        gproji_fail_schedule(s, group->name, group->schedule);
-        return -1;
-    }
+    if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
     count = (size_t)s->group_count;
     s->group = (gproji_group *)gproji_grow(&s->own, s->group, &s->capacity.group, count + 1, sizeof *s->group);
     g = count < s->capacity.group ? &s->group[count] : NULL;
@@ -8186,7 +8164,7 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_group(s, group))
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group, "there is no group %d", group);
-    if (!gproji_schedule_is_valid(schedule)) return gproji_fail_schedule(s, s->group[group].name, schedule);
+    if (gproji_check_schedule(s, s->group[group].name, schedule) != GPROJ_OK) return s->error.code;
     s->group[group].schedule = schedule;
     s->changed = true;
     return GPROJ_OK;
@@ -8857,13 +8835,6 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
-    int32_t i;
-    for (i = 0; i < s->group_count; ++i)
-        s->group[i].local.at = gproji_take_ints(&s->taken, (int64_t)gproji_local_count(&s->group[i]));
-    return !s->taken.failed;
-}
-
 /* Step 4, for the matrix with all variables: finds each row's front, and the locals' padded rows there. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
@@ -8881,7 +8852,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     front = gproji_take_ints(&pool, all);
     rows->start = (int64_t *)gproji_pool_take_zeroed(&s->taken, (int64_t)sy->fronts + 2, sizeof *rows->start);
     rows->row = (gproji_row_name *)gproji_pool_take(&s->taken, all, sizeof *rows->row);
-    done = gproji_take_local_places(s) && !pool.failed;
+    done = !s->taken.failed && !pool.failed;
     /* 1. Sorts each row's locals by columns; the first one names the front. */
     if (done) gproji_invert(s->variable_count, s->cholesky->permutation, column);
     for (f = 0; done && f < sy->fronts; ++f)
@@ -8948,43 +8919,6 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 
 /* -- evaluation -- */
 
-/* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
-GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
-    const int32_t *variable = g->local.variable + row->local;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    const double *x = s->x;
-    double *gradient = g->local.gradient + row->local;
-    double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
-    if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
-    row->phi = 0;
-    if (!(row->weight > 0)) row->active = false;
-    if (!(row->weight > 0)) return;
-    if (row->run) {
-        size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
-        phi += gproji_dot(gradient, x + variable[0], row->terms);
-        term = end;
-    }
-    for (; term < end; ++term) {
-        double value = term->a * x[variable[term->i]], other;
-        if (term->j < 0) {
-            gradient[term->i] += term->a;
-        } else {
-            other = x[variable[term->j]];
-            gradient[term->i] += term->a * other;
-            gradient[term->j] += value;
-            value *= other;
-        }
-        phi += value;
-        size += fabs(value);
-    }
-    /* Large terms that cancel leave rounding: it would look like a residual. */
-    if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
-    row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
-    /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
-    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
-                  (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
-}
-
 /* Partial merit and largest residual in one chunk, for the weight `tallied`. */
 GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     gproji_group *g = (gproji_group *)data;
@@ -9004,17 +8938,52 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally.part[task] = tally;
 }
 
-/* Evaluates one chunk, a part of a group's rows. */
+/* Evaluates phi and gradients in one chunk, a part of a group's rows. Rows without weight get zeros; a contiguous linear
+   row keeps its gradient. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
-    int32_t task, r, end;
+    gproji_row *row, *row_end;
+    const double *x = s->x;
     while (index < g->tally.first_task || index - g->tally.first_task >= gproji_group_tasks(g)) ++g;
-    task = index - g->tally.first_task;
-    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
-    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
-    for (; r < end; ++r) gproji_evaluate_row(s, g, &g->row[r]);
-    gproji_tally_task(g, task);
+    index -= g->tally.first_task;
+    row = g->row + gproji_chunk_start(g->row_count, gproji_group_tasks(g), index);
+    row_end = g->row + gproji_chunk_start(g->row_count, gproji_group_tasks(g), index + 1);
+    for (; row < row_end; ++row) {
+        const int32_t *variable = g->local.variable + row->local;
+        const gproj_term *term = g->term + row->term, *end = term + row->terms;
+        double *gradient = g->local.gradient + row->local;
+        double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
+        if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+        row->phi = 0;
+        if (!(row->weight > 0)) row->active = false;
+        if (!(row->weight > 0)) continue;
+        if (row->run) {
+            size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
+            phi += gproji_dot(gradient, x + variable[0], row->terms);
+            term = end;
+        }
+        for (; term < end; ++term) {
+            double value = term->a * x[variable[term->i]], other;
+            if (term->j < 0) {
+                gradient[term->i] += term->a;
+            } else {
+                other = x[variable[term->j]];
+                gradient[term->i] += term->a * other;
+                gradient[term->j] += value;
+                value *= other;
+            }
+            phi += value;
+            size += fabs(value);
+        }
+        /* Large terms that cancel leave rounding: it would look like a residual. */
+        if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
+        row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
+        /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
+        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
+                      (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
+    }
+    gproji_tally_task(g, index);
 }
 
 /* Evaluates all rows at the current x. */
@@ -9369,13 +9338,6 @@ enum {
 
 /* -- compilation -- */
 
-/* Entry in `of_place` for the element with a row at this kind of place, a face or a vertex; NULL: the row is at another
-   kind, or the place's number is too large for a table with as many entries as nodes. */
-GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                            gproj_place place, int32_t *of_place) {
-    return g->place == place && row->element >= 0 && row->element < s->nodes.count ? of_place + row->element : NULL;
-}
-
 /* Elements met so far, by local unknowns and by place; -1 at first. Each array has room for all nodes. */
 typedef struct gproji_elements {
     int32_t *of_node; /* local unknowns */
@@ -9386,8 +9348,8 @@ typedef struct gproji_elements {
    several elements, which cannot be eliminated one by one then. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           const gproji_elements *elements, int32_t *belongs) {
-    int32_t auxiliary = -1, kept = -1, *own, *face;
-    bool many = false;
+    int32_t auxiliary = -1, kept = -1, *own = NULL, *face = NULL;
+    bool many = false, placed = row->element >= 0 && row->element < s->nodes.count; /* in tables by nodes */
     int64_t l;
     *belongs = GPROJI_NOWHERE;
     if (g->idle || row->dormant) return true;
@@ -9406,9 +9368,9 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         return true;
     }
     /* Local unknowns decide; other rows join a face's element if there is one, or that of a vertex. */
-    face = gproji_place_element(s, g, row, GPROJ_PLACE_FACE, elements->of_face);
-    own = auxiliary >= 0 ? &elements->of_node[auxiliary] : face;
-    if (!own) own = gproji_place_element(s, g, row, GPROJ_PLACE_VERTEX, elements->of_vertex);
+    if (placed && g->place == GPROJ_PLACE_FACE) own = face = elements->of_face + row->element;
+    if (placed && g->place == GPROJ_PLACE_VERTEX) own = elements->of_vertex + row->element;
+    if (auxiliary >= 0) own = elements->of_node + auxiliary;
     *belongs = own && *own >= 0 ? *own : s->schur.elements++;
     if (own) *own = *belongs;
     if (face) *face = *belongs;
@@ -9747,7 +9709,7 @@ GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
     gproji_pool_start(&pool, &s->own);
     at = gproji_take_ints(&pool, gproji_max(s->variable_count, d->first[d->elements]));
     sequence = gproji_take_ints(&pool, s->nodes.count);
-    done = gproji_take_local_places(s) && gproji_schur_take(s) && !pool.failed;
+    done = gproji_schur_take(s) && !s->taken.failed && !pool.failed;
     if (done) {
         gproji_schur_place_matrix(s, sequence, at);
         memset(at, 0, (size_t)s->nodes.count * sizeof *at);
@@ -9784,6 +9746,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
 /* Compiles the rows but for step 5, unless that is done. False: it failed, see gproji_fail_compile. */
 GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
+    int32_t i;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return true;
@@ -9793,6 +9756,8 @@ GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
         s->schur.stale = s->schur.on && whole;
         if (s->schur.stale) gproji_schur_forget(s);
         code = s->schur.on ? gproji_analyse_elements(s) : gproji_analyse_whole(s);
+        for (i = 0; code == GPROJ_OK && i < s->group_count; ++i)
+            s->group[i].local.at = gproji_take_ints(&s->taken, (int64_t)gproji_local_count(&s->group[i]));
         if (code == GPROJ_OK && !(s->schur.on ? gproji_place_elements(s) : gproji_compile_places(s)))
             code = GPROJ_ERROR_MEMORY;
     }
