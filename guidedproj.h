@@ -3957,27 +3957,6 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
     return (int32_t)(hash % (uint32_t)amd->nodes);
 }
 
-/* Merges variables in one hash list that have the same elements and neighbours. */
-GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
-    int32_t i, j, before, k;
-    for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
-        amd->stamp++;
-        for (k = 1; k < amd->length[i]; ++k) amd->mark[amd->space[amd->list[i] + k]] = amd->stamp;
-        for (before = i, j = amd->next[i]; j >= 0; j = amd->next[j]) {
-            const int32_t *list = amd->space + amd->list[j]; /* begins with the new element, as that of i */
-            bool same = amd->length[i] == amd->length[j] && amd->elements[i] == amd->elements[j];
-            for (k = 1; same && k < amd->length[j]; ++k) same = amd->mark[list[k]] == amd->stamp;
-            if (same) {
-                amd->weight[i] += amd->weight[j]; /* both negative */
-                gproji_amd_absorb(amd, i, j);
-                amd->next[before] = amd->next[j];
-            } else {
-                before = j;
-            }
-        }
-    }
-}
-
 /* Eliminates one pivot: forms the element and brings all variables in it up to date. */
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t j, k, to = 0, *element;
@@ -4011,14 +3990,29 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         amd->next[i] = amd->hash_head[hash];
         amd->hash_head[hash] = i;
     }
-    /* 3. Supervariables. Empties the hash lists. */
+    /* 3. Supervariables: empties the hash lists, and merges variables there with the same elements and neighbours. */
     amd->stamp += (int64_t)amd->total + 1;
     for (k = 0; k < amd->length[pivot]; ++k) {
-        int32_t i = element[k], first;
+        int32_t i = element[k], other, before;
         if (amd->weight[i] == 0) continue;
-        first = amd->hash_head[amd->previous[i]];
-        amd->hash_head[amd->previous[i]] = -1;
-        if (first >= 0) gproji_amd_merge(amd, first);
+        i = amd->hash_head[amd->previous[i]];
+        amd->hash_head[amd->previous[element[k]]] = -1;
+        for (; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
+            amd->stamp++;
+            for (j = 1; j < amd->length[i]; ++j) amd->mark[amd->space[amd->list[i] + j]] = amd->stamp;
+            for (before = i, other = amd->next[i]; other >= 0; other = amd->next[other]) {
+                const int32_t *list = amd->space + amd->list[other]; /* begins with the new element, as that of i */
+                bool same = amd->length[i] == amd->length[other] && amd->elements[i] == amd->elements[other];
+                for (j = 1; same && j < amd->length[other]; ++j) same = amd->mark[list[j]] == amd->stamp;
+                if (same) {
+                    amd->weight[i] += amd->weight[other]; /* both negative */
+                    gproji_amd_absorb(amd, i, other);
+                    amd->next[before] = amd->next[other];
+                } else {
+                    before = other;
+                }
+            }
+        }
     }
     /* 4. Final degrees. Absorbed variables leave the element's list. */
     for (k = 0; k < amd->length[pivot]; ++k) {
@@ -6546,7 +6540,7 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
             int32_t last = gproji_min(first + 2, c->sides);
             for (side = first; side < last; ++side) gproji_enter_front(c, front, side, rows_of[side - first]);
             gproji_panel_forward(&panel, rows_of[0], last - first > 1 ? rows_of[1] : NULL);
-            for (side = first; side < last; ++side) { /* keeps unknowns, and the partial right-hand side for the parent */
+            for (side = first; side < last; ++side) { /* keeps unknowns, and the right-hand side for the parent */
                 const double *pivots = rows_of[side - first] + panel.shift;
                 double *x = c->solution + (size_t)side * (size_t)sy->columns;
                 memcpy(x + front->first, pivots, (size_t)front->width * sizeof *x);
@@ -7901,18 +7895,6 @@ GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_
 /* Counts the locals in all rows. */
 GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
 
-/* Lets i or j of a term name a local by the order in which the terms name them. number: new numbers of locals; -1: not
-   named yet. Returns the count named so far. */
-GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
-                                        int32_t *local) {
-    if (number[*i] < 0) {
-        local[named] = variable[*i];
-        number[*i] = named++;
-    }
-    *i = number[*i];
-    return named;
-}
-
 /* Restores the locals' order as given, so that a new compilation does not depend on earlier ones. */
 GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
@@ -7924,10 +7906,12 @@ GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
         count = (int32_t)(row[1].local - row->local);
         for (i = 0; i < count; ++i) number[i] = -1, variable[i] = local[i];
         for (named = 0; term < end; ++term) {
-            gproj_term now = *term;
-            named = gproji_name_again(variable, &now.i, number, named, local);
-            if (now.j >= 0) named = gproji_name_again(variable, &now.j, number, named, local);
-            if (!g->common) *term = now;
+            int32_t p = term->i, q = term->j;
+            if (number[p] < 0) local[named] = variable[p], number[p] = named++;
+            if (q >= 0 && number[q] < 0) local[named] = variable[q], number[q] = named++;
+            if (g->common) continue;
+            term->i = number[p];
+            if (q >= 0) term->j = number[q];
         }
         row->term = row->source;
     }
@@ -9795,19 +9779,6 @@ GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
     }
 }
 
-/* Inverts a lower triangle with `size` rows. */
-GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
-    int32_t i, j, k;
-    for (j = 0; j < size; ++j) {
-        root[j * size + j] = 1 / root[j * size + j];
-        for (i = j + 1; i < size; ++i) {
-            double sum = 0;
-            for (k = j; k < i; ++k) sum += root[i * size + k] * root[k * size + j];
-            root[i * size + j] = -sum / root[i * size + i];
-        }
-    }
-}
-
 /* Weight in this step; 0 if the row does not act. */
 GPROJI_INLINE double gproji_acting_weight(const gproji_group *g, const gproji_row *row) {
     return g->weight > 0 && row->active ? g->weight * row->weight : 0;
@@ -10109,25 +10080,6 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     }
 }
 
-/* Adds a node's own rows to D and b: w^2 g g' and - w^2 phi g. */
-GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t size, double *root, double *b) {
-    const gproji_schur *d = &s->schur;
-    int64_t k;
-    int32_t i, j;
-    for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
-        const gproji_group *g = &s->group[d->row[k].group];
-        const gproji_row *row = &g->row[d->row[k].row];
-        const double *gradient = g->local.gradient + row->local;
-        const int32_t *at = g->local.at + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local);
-        double w = gproji_acting_weight(g, row), w2 = w * w;
-        for (i = 0; i < count && w > 0; ++i) {
-            b[at[i]] -= w2 * row->phi * gradient[i];
-            for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
-        }
-    }
-}
-
 /* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
@@ -10136,7 +10088,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     bool plain = d->own_start[v] == d->own_start[v + 1];
     double share = 1, corner;
     int64_t k;
-    int32_t i, j;
+    int32_t i, j, p;
     for (k = d->w.entry_start[v]; d->turns[v] && k < d->w.entry_start[v + 1]; ++k) share += d->share[d->w.entry[k]];
     d->metric[v] = share;
     corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
@@ -10150,10 +10102,30 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
             for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->nodes.first[v] + i] *= corner;
         return;
     }
-    /* D = L L', K = L^-1; then b, the rows in W and U are multiplied by it. */
-    gproji_schur_own(s, v, size, root, b);
+    /* 1. Adds its rows to D and b: w^2 g g' and - w^2 phi g. */
+    for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
+        const gproji_group *g = &s->group[d->row[k].group];
+        const gproji_row *row = &g->row[d->row[k].row];
+        const double *gradient = g->local.gradient + row->local;
+        const int32_t *at = g->local.at + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        double weight = gproji_acting_weight(g, row), w2 = weight * weight;
+        for (i = 0; i < count && weight > 0; ++i) {
+            b[at[i]] -= w2 * row->phi * gradient[i];
+            for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
+        }
+    }
+    /* 2. D = L L', K = L^-1. */
     gproji_small_factor(root, size, size, DBL_MIN);
-    gproji_invert_triangle(root, size);
+    for (j = 0; j < size; ++j) {
+        root[j * size + j] = 1 / root[j * size + j];
+        for (i = j + 1; i < size; ++i) {
+            double sum = 0;
+            for (p = j; p < i; ++p) sum += root[i * size + p] * root[p * size + j];
+            root[i * size + j] = -sum / root[i * size + i];
+        }
+    }
+    /* 3. Multiplies b, and the rows in W and U, by it. */
     gproji_whiten(size, root, b);
     for (k = d->w.entry_start[v]; k < d->w.entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
     for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->nodes.first[v]);
