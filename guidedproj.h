@@ -7808,13 +7808,14 @@ typedef struct gproji_nodes {
     int32_t *first; /* count + 1 (taken: variables + 1): first variable in each node, and the end */
 } gproji_nodes;
 
-/* Vectors of a step, a number for each variable. */
+/* Vectors of a step, a number for each variable but for `hinges`. */
 typedef struct gproji_vectors {
-    double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;     /* dx: the first column of `sides` */
-    double *saved;    /* x before the step */
-    double *sum;      /* nearest: steps in a slide, added up; NULL before */
-    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    double *gradient;     /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;         /* dx: the first column of `sides` */
+    double *saved;        /* x before the step */
+    double *sum;          /* nearest: steps in a slide, added up; NULL before */
+    double *sides;        /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    gproji_hinge *hinges; /* room for all rows in bounds, which a step may violate */
 } gproji_vectors;
 
 /* Entries that a system's growing arrays have room for. */
@@ -7849,7 +7850,6 @@ struct gproj_system {
     gproji_vectors vector;
     int32_t wide_count;
     gproji_wide wide;
-    gproji_hinge *hinges; /* rows in bounds that a step may violate */
     gproji_schur schur;
 };
 
@@ -7939,7 +7939,6 @@ GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
     memset(&s->fronts, 0, sizeof s->fronts);
     memset(&s->wide, 0, sizeof s->wide);
     memset(&s->vector, 0, sizeof s->vector);
-    s->hinges = NULL;
     gproji_pool_give_all(&s->taken);
     gproji_schur_forget(s);
     s->compiled = s->evaluated = false;
@@ -8890,7 +8889,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
             for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
-    s->hinges = (gproji_hinge *)gproji_pool_take(pool, hinges, sizeof(gproji_hinge));
+    s->vector.hinges = (gproji_hinge *)gproji_pool_take(pool, hinges, sizeof(gproji_hinge));
     s->vector.gradient = (double *)gproji_pool_take(pool, n, sizeof(double));
     s->vector.saved = (double *)gproji_pool_take(pool, n, sizeof(double));
     s->vector.sides = s->vector.step = (double *)gproji_pool_take(pool, (wide + 1) * n, sizeof(double));
@@ -10862,7 +10861,7 @@ typedef struct gproji_course {
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
-    m->hinge = s->hinges;
+    m->hinge = s->vector.hinges;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
@@ -10883,7 +10882,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
                 m->c[3] += w2 * 2 * h * q;
                 m->c[4] += w2 * q * q;
             } else if (!(phi + 2 * gproji_fmin(h, 0) + 4 * gproji_fmin(q, 0) >= 0)) { /* a t <= 2 may violate it */
-                gproji_hinge *hinge = &s->hinges[m->count++];
+                gproji_hinge *hinge = &s->vector.hinges[m->count++];
                 hinge->w2 = w2, hinge->phi = phi, hinge->h = h, hinge->q = q;
             }
         }
