@@ -1838,15 +1838,6 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INTERNAL static
 #endif
 
-/* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
-#if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
-#define GPROJI_RESTRICT __restrict
-#elif defined(__cplusplus)
-#define GPROJI_RESTRICT
-#else
-#define GPROJI_RESTRICT restrict
-#endif
-
 /* Begins to bring the cache line of an address into the cache, or into that of the second level. gcc takes a function
    that does only this for one without effect, and drops calls of it: such a function is always inlined. */
 #if defined(__GNUC__) || defined(__clang__)
