@@ -1840,15 +1840,6 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INTERNAL static
 #endif
 
-/* C++ has no restrict, and Microsoft's compiler knows it in its newest modes only. */
-#if defined(__GNUC__) || defined(__clang__) || defined(_MSC_VER)
-#define GPROJI_RESTRICT __restrict
-#elif defined(__cplusplus)
-#define GPROJI_RESTRICT
-#else
-#define GPROJI_RESTRICT restrict
-#endif
-
 /* Begins to bring the cache line of an address into the cache, or into that of the second level. gcc takes a function
    that does only this for one without effect, and drops calls of it: such a function is always inlined. */
 #if defined(__GNUC__) || defined(__clang__)
@@ -1915,11 +1906,6 @@ GPROJI_INLINE bool gproji_is_finite(double x) {
 
 GPROJ_API int32_t gproj_version(void) { return GPROJ_VERSION_NUMBER; }
 
-GPROJI_INTERNAL bool gproji_are_finite(const double *x, size_t count) {
-    size_t i, odd = 0;
-    for (i = 0; i < count; ++i) odd += !gproji_is_finite(x[i]);
-    return odd == 0;
-}
 /* ============================================================================================================
    >>number   Numbers as decimal text, exactly and whatever the locale. Uses platform.
 
@@ -2374,7 +2360,7 @@ GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
     return heap;
 }
 
-/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_grant refuses. */
+/* count * size, at least 1; SIZE_MAX if that overflows, which gproji_retake refuses. */
 GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
     if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
     return count ? count * size : size;
@@ -2383,31 +2369,49 @@ GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
 /* a + b, or SIZE_MAX if that is more. */
 GPROJI_INTERNAL size_t gproji_add_bytes(size_t a, size_t b) { return b < SIZE_MAX - a ? a + b : SIZE_MAX; }
 
-/* May the heap hold `more` bytes in place of `less` of those it has? */
-GPROJI_INTERNAL bool gproji_grant(const gproji_heap *heap, size_t less, size_t more) {
-    size_t held = heap->account.used - less;
-    if (more > SIZE_MAX / 2 || held > SIZE_MAX / 2) return false;
-    return heap->hook.limit == 0 || held + more <= heap->hook.limit;
+/* Gives a block back; NULL is allowed. */
+GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
+    size_t bytes = gproji_bytes(count, size);
+    if (!block) return;
+    heap->account.used -= bytes;
+    if (!heap->hook.allocate)
+        free(block);
+    else if (heap->hook.release)
+        heap->hook.release(heap->hook.user, block, bytes);
 }
 
-GPROJI_INTERNAL void gproji_account(gproji_heap *heap, size_t less, size_t more) {
-    heap->account.used = heap->account.used - less + more;
+/* Changes a block's count, keeping elements that fit; a NULL block is taken. NULL: no memory; the old block stays. */
+GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
+    const gproj_allocator *hook = &heap->hook;
+    size_t less = block ? gproji_bytes(old_count, size) : 0, more = gproji_bytes(new_count, size);
+    size_t rest = heap->account.used - less;
+    void *moved;
+    if (heap->foretold && !block) {
+        *heap->foretold = gproji_add_bytes(*heap->foretold, more);
+        return NULL;
+    }
+    if (block && hook->allocate && !hook->reallocate) {
+        moved = gproji_retake(heap, NULL, 0, new_count, size);
+        if (!moved) return NULL;
+        memcpy(moved, block, less < more ? less : more);
+        gproji_give(heap, block, old_count, size);
+        return moved;
+    }
+    heap->account.allocations++;
+    if (more > SIZE_MAX / 2 || rest > SIZE_MAX / 2 || (hook->limit > 0 && rest + more > hook->limit)) return NULL;
+    if (!hook->allocate)
+        moved = realloc(block, more);
+    else
+        moved = block ? hook->reallocate(hook->user, block, less, more) : hook->allocate(hook->user, more);
+    if (!moved) return NULL;
+    heap->account.used = rest + more;
     if (heap->account.used > heap->account.peak) heap->account.peak = heap->account.used;
+    return moved;
 }
 
 /* Takes a block with undefined contents. NULL when there is no memory. */
 GPROJI_INTERNAL void *gproji_take(gproji_heap *heap, size_t count, size_t size) {
-    size_t bytes = gproji_bytes(count, size);
-    void *block;
-    if (heap->foretold) {
-        *heap->foretold = gproji_add_bytes(*heap->foretold, bytes);
-        return NULL;
-    }
-    heap->account.allocations++;
-    if (!gproji_grant(heap, 0, bytes)) return NULL;
-    block = heap->hook.allocate ? heap->hook.allocate(heap->hook.user, bytes) : malloc(bytes);
-    if (block) gproji_account(heap, 0, bytes);
-    return block;
+    return gproji_retake(heap, NULL, 0, count, size);
 }
 
 GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t size) {
@@ -2416,49 +2420,23 @@ GPROJI_INTERNAL void *gproji_take_zeroed(gproji_heap *heap, size_t count, size_t
     return block;
 }
 
-/* Gives a block back; NULL is allowed. */
-GPROJI_INTERNAL void gproji_give(gproji_heap *heap, void *block, size_t count, size_t size) {
-    size_t bytes = gproji_bytes(count, size);
-    if (!block) return;
-    gproji_account(heap, bytes, 0);
-    if (!heap->hook.allocate)
-        free(block);
-    else if (heap->hook.release)
-        heap->hook.release(heap->hook.user, block, bytes);
-}
-
-/* Changes a block's count, keeping elements that fit; `block` may be NULL. NULL: no memory; the old block stays. */
-GPROJI_INTERNAL void *gproji_retake(gproji_heap *heap, void *block, size_t old_count, size_t new_count, size_t size) {
-    size_t old_bytes = gproji_bytes(old_count, size), new_bytes = gproji_bytes(new_count, size);
+/* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
+   O(n). Returns the array; without memory that is the old one, and *capacity stays below `needed`. */
+GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capacity, size_t needed, size_t size) {
+    size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
     void *moved;
-    if (!block) return gproji_take(heap, new_count, size);
-    if (heap->hook.allocate && !heap->hook.reallocate) {
-        moved = gproji_take(heap, new_count, size);
-        if (!moved) return NULL;
-        memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
-        gproji_give(heap, block, old_count, size);
-        return moved;
-    }
-    heap->account.allocations++;
-    if (!gproji_grant(heap, old_bytes, new_bytes)) return NULL;
-    moved = heap->hook.allocate ? heap->hook.reallocate(heap->hook.user, block, old_bytes, new_bytes)
-                                : realloc(block, new_bytes);
-    if (moved) gproji_account(heap, old_bytes, new_bytes);
+    if (needed <= *capacity) return block;
+    if (wanted < needed) wanted = needed;
+    moved = gproji_retake(heap, block, block ? *capacity : 0, wanted, size);
+    if (!moved) return block;
+    *capacity = wanted;
     return moved;
 }
 
-/* Makes room for `needed` elements in a growing array with *capacity elements. Doubles it, so that n additions cost
-   O(n). False when there is no memory; the array is then unchanged. */
+/* Grows *block; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
-    size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
-    void *moved;
-    if (needed <= *capacity) return true;
-    if (wanted < needed) wanted = needed;
-    moved = gproji_retake(heap, *block, *block ? *capacity : 0, wanted, size);
-    if (!moved) return false;
-    *block = moved;
-    *capacity = wanted;
-    return true;
+    *block = gproji_grow(heap, *block, capacity, needed, size);
+    return needed <= *capacity;
 }
 
 /* A growing array of integers; zeros at first. */
@@ -2469,24 +2447,15 @@ typedef struct gproji_ints {
 
 /* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
 GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
-    void *block = ints->data;
     if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
-    if (!gproji_reserve(heap, &block, &ints->capacity, ints->count + 1, sizeof(int32_t))) return false;
-    ints->data = (int32_t *)block;
+    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
+    if (ints->count >= ints->capacity) return false;
     ints->data[ints->count++] = value;
     return true;
 }
 
 GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
     gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
-}
-
-/* Takes an object's struct from a new heap, which moves into the object as the first member. */
-GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size) {
-    gproji_heap heap = gproji_heap_of(host);
-    void *object = gproji_take_zeroed(&heap, 1, size);
-    if (object) memcpy(object, &heap, sizeof heap);
-    return object;
 }
 
 GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
@@ -2512,50 +2481,52 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. */
-enum {
-    GPROJI_POOL_BLOCKS = 48 /* more than any takes */
-};
+/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. Each block
+   has a link in front, which must not spoil the alignment of doubles. */
+typedef struct gproji_link {
+    struct gproji_link *before; /* the block taken before this one, or NULL */
+    size_t bytes;
+} gproji_link;
+
 typedef struct gproji_pool {
     gproji_heap *heap;
+    gproji_link *last;
     bool failed; /* some block could not be taken */
-    int32_t count;
-    void *block[GPROJI_POOL_BLOCKS];
-    size_t bytes[GPROJI_POOL_BLOCKS];
 } gproji_pool;
 
 GPROJI_INTERNAL void gproji_pool_start(gproji_pool *pool, gproji_heap *heap) {
     pool->heap = heap;
+    pool->last = NULL;
     pool->failed = false;
-    pool->count = 0;
 }
 
 GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
-    while (pool->count > 0) {
-        pool->count--;
-        gproji_give(pool->heap, pool->block[pool->count], pool->bytes[pool->count], 1);
+    while (pool->last) {
+        gproji_link *link = pool->last;
+        pool->last = link->before;
+        gproji_give(pool->heap, link, link->bytes, 1);
     }
     pool->failed = false;
 }
 
 /* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 2 / size;
-    size_t bytes = possible ? gproji_bytes((size_t)count, size) : SIZE_MAX; /* which is refused */
-    void *block = gproji_take(pool->heap, bytes, 1);
-    GPROJ_ASSERT(pool->count < GPROJI_POOL_BLOCKS);
-    if (!block) {
+    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 4 / size;
+    size_t bytes = possible ? sizeof(gproji_link) + (size_t)count * size : SIZE_MAX; /* which is refused */
+    gproji_link *link = (gproji_link *)gproji_take(pool->heap, bytes, 1);
+    if (!link) {
         pool->failed = true;
         return NULL;
     }
-    pool->block[pool->count] = block;
-    pool->bytes[pool->count++] = bytes;
-    return block;
+    link->before = pool->last;
+    link->bytes = bytes;
+    pool->last = link;
+    return link + 1;
 }
 
 GPROJI_INTERNAL void *gproji_pool_take_zeroed(gproji_pool *pool, int64_t count, size_t size) {
     void *block = gproji_pool_take(pool, count, size);
-    if (block) memset(block, 0, pool->bytes[pool->count - 1]);
+    if (block) memset(block, 0, (size_t)count * size);
     return block;
 }
 
@@ -2572,13 +2543,12 @@ GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, 
 
 /* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
-    int32_t last = pool->count - 1;
-    size_t bytes = gproji_bytes((size_t)count, size);
-    void *moved = gproji_retake(pool->heap, pool->block[last], pool->bytes[last], bytes, 1);
+    size_t bytes = sizeof(gproji_link) + (size_t)count * size;
+    gproji_link *moved = (gproji_link *)gproji_retake(pool->heap, pool->last, pool->last->bytes, bytes, 1);
     if (!moved) return NULL;
-    pool->block[last] = moved;
-    pool->bytes[last] = bytes;
-    return moved;
+    moved->bytes = bytes;
+    pool->last = moved;
+    return moved + 1;
 }
 
 /* ============================================================================================================
@@ -2713,10 +2683,14 @@ GPROJI_INTERNAL bool gproji_given(const void *argument, const char *noun, gproj_
     return argument != NULL;
 }
 
-/* Takes an object's struct from a new heap, as gproji_create_object does; fails without memory. */
-GPROJI_INTERNAL void *gproji_begin_object(const gproj_host *host, size_t size, gproj_error *error) {
-    void *object = gproji_create_object(host, size);
-    if (!object) gproji_fail_memory(error);
+/* Takes an object's struct, zeroed, from a new heap, which moves into the object as the first member. */
+GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size, gproj_error *error) {
+    gproji_heap heap = gproji_heap_of(host);
+    void *object = gproji_take_zeroed(&heap, 1, size);
+    if (object)
+        memcpy(object, &heap, sizeof heap);
+    else
+        gproji_fail_memory(error);
     return object;
 }
 
@@ -3499,16 +3473,6 @@ GPROJI_INLINE ptrdiff_t gproji_column_stride(const gproji_panel *panel, int32_t 
     return panel->update_rows - gproji_strip_begin(at - pivot_end);
 }
 
-/* Writes the columns that belong to all storage rows before `to`, the end of a block, to column[at]. */
-GPROJI_INLINE void gproji_panel_columns(const gproji_panel *panel, int32_t to, double **column) {
-    int32_t at, i;
-    for (at = 0; at < to; at += GPROJI_BLOCK) {
-        double *first = gproji_panel_column(panel, at);
-        ptrdiff_t stride = gproji_column_stride(panel, at);
-        for (i = 0; i < GPROJI_BLOCK; ++i, first += stride) column[at + i] = first;
-    }
-}
-
 /* The end of the chunk that begins with column `first`. In storage rows GPROJI_CHUNK divides all but the last one. */
 GPROJI_INLINE int32_t gproji_next_chunk(const gproji_panel *panel, int32_t first) {
     return gproji_min(panel->w, first + GPROJI_CHUNK - (first ? 0 : panel->shift));
@@ -3655,23 +3619,6 @@ GPROJI_INTERNAL void gproji_clear(double *values, ptrdiff_t count) {
     for (; count > GPROJI_CLEARED; count -= GPROJI_CLEARED, values += GPROJI_CLEARED)
         memset(values, 0, GPROJI_CLEARED * sizeof *values);
     memset(values, 0, (size_t)count * sizeof *values);
-}
-
-/* Sets the columns that belong to storage rows [from, to) to 0. */
-GPROJI_INTERNAL void gproji_clear_columns(const gproji_panel *panel, int32_t from, int32_t to) {
-    int32_t pivot_end = panel->shape.end, end = gproji_min(to, pivot_end);
-    from = gproji_max(from, panel->shift);
-    if (from < end) {
-        ptrdiff_t begin = gproji_shape_offset(panel->shape, from) + gproji_shape_first(panel->shape, from);
-        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
-        gproji_clear(panel->values + begin, next - begin);
-    }
-    from = gproji_max(from, pivot_end) - pivot_end, to -= pivot_end;
-    if (from < to) {
-        ptrdiff_t begin = gproji_update_offset(panel->update_rows, from) + gproji_strip_begin(from);
-        ptrdiff_t next = gproji_update_offset(panel->update_rows, to) + gproji_strip_begin(to);
-        gproji_clear(panel->update + begin, next - begin);
-    }
 }
 
 #ifdef GPROJ_USE_CBLAS
@@ -4003,27 +3950,6 @@ GPROJI_INTERNAL int32_t gproji_amd_prune(gproji_amd *amd, int32_t pivot, int32_t
     return (int32_t)(hash % (uint32_t)amd->nodes);
 }
 
-/* Merges variables in one hash list that have the same elements and neighbours. */
-GPROJI_INTERNAL void gproji_amd_merge(gproji_amd *amd, int32_t first) {
-    int32_t i, j, before, k;
-    for (i = first; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
-        amd->stamp++;
-        for (k = 1; k < amd->length[i]; ++k) amd->mark[amd->space[amd->list[i] + k]] = amd->stamp;
-        for (before = i, j = amd->next[i]; j >= 0; j = amd->next[j]) {
-            const int32_t *list = amd->space + amd->list[j]; /* begins with the new element, as that of i */
-            bool same = amd->length[i] == amd->length[j] && amd->elements[i] == amd->elements[j];
-            for (k = 1; same && k < amd->length[j]; ++k) same = amd->mark[list[k]] == amd->stamp;
-            if (same) {
-                amd->weight[i] += amd->weight[j]; /* both negative */
-                gproji_amd_absorb(amd, i, j);
-                amd->next[before] = amd->next[j];
-            } else {
-                before = j;
-            }
-        }
-    }
-}
-
 /* Eliminates one pivot: forms the element and brings all variables in it up to date. */
 GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     int32_t j, k, to = 0, *element;
@@ -4057,14 +3983,29 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         amd->next[i] = amd->hash_head[hash];
         amd->hash_head[hash] = i;
     }
-    /* 3. Supervariables. Empties the hash lists. */
+    /* 3. Supervariables: empties the hash lists, and merges variables there with the same elements and neighbours. */
     amd->stamp += (int64_t)amd->total + 1;
     for (k = 0; k < amd->length[pivot]; ++k) {
-        int32_t i = element[k], first;
+        int32_t i = element[k], other, before;
         if (amd->weight[i] == 0) continue;
-        first = amd->hash_head[amd->previous[i]];
-        amd->hash_head[amd->previous[i]] = -1;
-        if (first >= 0) gproji_amd_merge(amd, first);
+        i = amd->hash_head[amd->previous[i]];
+        amd->hash_head[amd->previous[element[k]]] = -1;
+        for (; i >= 0 && amd->next[i] >= 0; i = amd->next[i]) {
+            amd->stamp++;
+            for (j = 1; j < amd->length[i]; ++j) amd->mark[amd->space[amd->list[i] + j]] = amd->stamp;
+            for (before = i, other = amd->next[i]; other >= 0; other = amd->next[other]) {
+                const int32_t *list = amd->space + amd->list[other]; /* begins with the new element, as that of i */
+                bool same = amd->length[i] == amd->length[other] && amd->elements[i] == amd->elements[other];
+                for (j = 1; same && j < amd->length[other]; ++j) same = amd->mark[list[j]] == amd->stamp;
+                if (same) {
+                    amd->weight[i] += amd->weight[other]; /* both negative */
+                    gproji_amd_absorb(amd, i, other);
+                    amd->next[before] = amd->next[other];
+                } else {
+                    before = other;
+                }
+            }
+        }
     }
     /* 4. Final degrees. Absorbed variables leave the element's list. */
     for (k = 0; k < amd->length[pivot]; ++k) {
@@ -4101,66 +4042,59 @@ GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total,
     }
 }
 
-/* Takes memory for a graph and fills the lists with all nodes that are not dense. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_amd_start(gproji_amd *amd, gproji_pool *pool, const gproji_graph *graph, int32_t total) {
-    int32_t **const ints[] = {&amd->length,   &amd->weight,    &amd->degree, &amd->next,
-                              &amd->previous, &amd->hash_head, &amd->tail,   &amd->chain};
-    int32_t i, n = graph->nodes;
-    int64_t k;
-    size_t a;
-    memset(amd, 0, sizeof *amd);
-    amd->nodes = n;
-    amd->buckets = total + 1;
-    amd->stamp = 1;
-    amd->size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
-    amd->space = gproji_take_ints(pool, amd->size);
-    amd->list = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-    amd->mark = (int64_t *)gproji_pool_take_zeroed(pool, n, sizeof(int64_t));
-    amd->elements = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    amd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    amd->head = gproji_take_ints(pool, amd->buckets);
-    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) *ints[a] = gproji_take_ints(pool, n);
-    if (pool->failed) return false;
-    gproji_mark_dense(graph, total, amd->kind, GPROJI_AMD_DENSE);
-    for (i = 0; i < amd->buckets; ++i) amd->head[i] = -1;
-    for (i = 0; i < n; ++i) {
-        int32_t degree = 0;
-        amd->hash_head[i] = amd->chain[i] = -1;
-        amd->tail[i] = i;
-        amd->weight[i] = graph->weight[i];
-        amd->list[i] = amd->free;
-        amd->length[i] = 0;
-        if (amd->kind[i] == GPROJI_AMD_DENSE) continue;
-        amd->total += amd->weight[i];
-        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) {
-            int32_t j = graph->adjacent[k];
-            if (amd->kind[j] == GPROJI_AMD_DENSE) continue;
-            amd->space[amd->free++] = j;
-            degree += graph->weight[j];
-        }
-        amd->length[i] = (int32_t)(amd->free - amd->list[i]);
-        amd->degree[i] = degree;
-    }
-    amd->left = amd->total;
-    for (i = n - 1; i >= 0; --i)
-        if (amd->kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(amd, i);
-    amd->lowest = 0;
-    return true;
-}
-
 /* Writes the order (nodes entries: the node that is eliminated k-th) and, unless NULL, the flops to factor: an upper
    bound, exact without dense nodes. total: the weight of all nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order,
                                       double *flops) {
-    gproji_pool pool;
     gproji_amd amd;
-    int32_t i, count = 0;
+    int32_t **const ints[] = {&amd.length,   &amd.weight,    &amd.degree, &amd.next,
+                              &amd.previous, &amd.hash_head, &amd.tail,   &amd.chain};
+    int32_t i, n = graph->nodes, count = 0;
+    int64_t k;
+    size_t a;
+    gproji_pool pool;
     gproji_pool_start(&pool, heap);
-    if (!gproji_amd_start(&amd, &pool, graph, total)) {
+    memset(&amd, 0, sizeof amd);
+    amd.nodes = n;
+    amd.buckets = total + 1;
+    amd.stamp = 1;
+    amd.size = graph->start[n] + n + 1; /* one new element always fits after a compaction */
+    amd.space = gproji_take_ints(&pool, amd.size);
+    amd.list = (int64_t *)gproji_pool_take(&pool, n, sizeof(int64_t));
+    amd.mark = (int64_t *)gproji_pool_take_zeroed(&pool, n, sizeof(int64_t));
+    amd.elements = (int32_t *)gproji_pool_take_zeroed(&pool, n, sizeof(int32_t));
+    amd.kind = (unsigned char *)gproji_pool_take_zeroed(&pool, n, 1);
+    amd.head = gproji_take_ints(&pool, amd.buckets);
+    for (a = 0; a < sizeof ints / sizeof ints[0]; ++a) *ints[a] = gproji_take_ints(&pool, n);
+    if (pool.failed) {
         gproji_pool_give_all(&pool);
         return false;
     }
-    while (amd.left > 0) {
+    /* 1. Lists all nodes that are not dense. */
+    gproji_mark_dense(graph, total, amd.kind, GPROJI_AMD_DENSE);
+    for (i = 0; i < amd.buckets; ++i) amd.head[i] = -1;
+    for (i = 0; i < n; ++i) {
+        int32_t degree = 0;
+        amd.hash_head[i] = amd.chain[i] = -1;
+        amd.tail[i] = i;
+        amd.weight[i] = graph->weight[i];
+        amd.list[i] = amd.free;
+        amd.length[i] = 0;
+        if (amd.kind[i] == GPROJI_AMD_DENSE) continue;
+        amd.total += amd.weight[i];
+        for (k = graph->start[i]; k < graph->start[i + 1]; ++k) {
+            int32_t j = graph->adjacent[k];
+            if (amd.kind[j] == GPROJI_AMD_DENSE) continue;
+            amd.space[amd.free++] = j;
+            degree += graph->weight[j];
+        }
+        amd.length[i] = (int32_t)(amd.free - amd.list[i]);
+        amd.degree[i] = degree;
+    }
+    for (i = n - 1; i >= 0; --i)
+        if (amd.kind[i] == GPROJI_AMD_VARIABLE) gproji_amd_list_add(&amd, i);
+    /* 2. Eliminates a node of least degree, with those that it has absorbed, until none is left; then dense ones. */
+    for (amd.left = amd.total, amd.lowest = 0; amd.left > 0;) {
         int32_t pivot, member;
         while (amd.head[amd.lowest] < 0) amd.lowest++;
         pivot = amd.head[amd.lowest];
@@ -4168,9 +4102,9 @@ GPROJI_INTERNAL bool gproji_amd_order(gproji_heap *heap, const gproji_graph *gra
         gproji_amd_eliminate(&amd, pivot);
         for (member = pivot; member >= 0; member = amd.chain[member]) order[count++] = member;
     }
-    for (i = 0; i < graph->nodes; ++i)
+    for (i = 0; i < n; ++i)
         if (amd.kind[i] == GPROJI_AMD_DENSE) order[count++] = i;
-    GPROJ_ASSERT(count == graph->nodes);
+    GPROJ_ASSERT(count == n);
     if (flops) *flops = amd.flops + gproji_front_flops((double)total - amd.total, 0);
     gproji_pool_give_all(&pool);
     return true;
@@ -4191,68 +4125,59 @@ typedef struct gproji_condensation {
     int32_t *number; /* all nodes: index in `first` */
 } gproji_condensation;
 
-/* Chooses an independent set of nodes with at least 3 neighbours, all light, the lightest first: the normals of faces,
-   say. Chains and trees are left to the minimum degree ordering, which orders them without fill. */
-GPROJI_INTERNAL bool gproji_choose_condensed(gproji_condensation *x, const gproji_graph *graph) {
-    int32_t n = graph->nodes, i, k, d, start[GPROJI_CONDENSED_DEGREE + 3], *degree, *sorted;
-    int64_t e;
-    unsigned char *taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1); /* chosen, or next to one */
+/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
+   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
+   size and shows the mesh. False when there is no memory. */
+GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
+    int32_t n = graph->nodes, start_of[GPROJI_CONDENSED_DEGREE + 3], i, k, d, left, *degree, *sorted, *mark;
+    int32_t *adjacent, *weight;
+    int64_t *start, room = graph->start[n], e, f, to = 0;
+    unsigned char *taken; /* chosen, or next to one that is */
+    memset(x, 0, sizeof *x);
+    gproji_pool_start(&x->pool, heap);
+    taken = (unsigned char *)gproji_pool_take_zeroed(&x->pool, n, 1);
     degree = gproji_take_ints(&x->pool, n);
     sorted = gproji_take_ints(&x->pool, n);
     x->first = gproji_take_ints(&x->pool, n);
     x->number = gproji_take_ints(&x->pool, n);
     if (x->pool.failed) return false;
-    memset(start, 0, sizeof start);
+    /* 1. Sorts nodes by degree, by counting. Only light ones with at least 3 neighbours are eligible, the normals of
+       faces, say: the minimum degree ordering eliminates chains and trees without fill. */
+    memset(start_of, 0, sizeof start_of);
     for (i = 0; i < n; ++i) {
-        int64_t weight = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
-        for (e = graph->start[i]; e < graph->start[i + 1] && weight <= GPROJI_CONDENSED_DEGREE; ++e)
-            weight += graph->weight[graph->adjacent[e]];
-        degree[i] = (int32_t)(weight <= GPROJI_CONDENSED_DEGREE ? weight : GPROJI_CONDENSED_DEGREE + 1);
-        start[degree[i] + 1]++;
+        int64_t sum = graph->start[i + 1] - graph->start[i] < 3 ? GPROJI_CONDENSED_DEGREE + 1 : 0;
+        for (e = graph->start[i]; e < graph->start[i + 1] && sum <= GPROJI_CONDENSED_DEGREE; ++e)
+            sum += graph->weight[graph->adjacent[e]];
+        degree[i] = (int32_t)(sum <= GPROJI_CONDENSED_DEGREE ? sum : GPROJI_CONDENSED_DEGREE + 1);
+        start_of[degree[i] + 1]++;
     }
-    /* sort by degree, by counting */
-    for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start[d + 1] += start[d];
-    for (i = 0; i < n; ++i) sorted[start[degree[i]]++] = i;
+    for (d = 0; d <= GPROJI_CONDENSED_DEGREE + 1; ++d) start_of[d + 1] += start_of[d];
+    for (i = 0; i < n; ++i) sorted[start_of[degree[i]]++] = i;
+    /* 2. Chooses the lightest first, and numbers all nodes. */
     for (k = 0; k < n && degree[sorted[k]] <= GPROJI_CONDENSED_DEGREE; ++k) {
         i = sorted[k];
         if (taken[i]) continue;
         for (e = graph->start[i]; e < graph->start[i + 1]; ++e) taken[graph->adjacent[e]] = 1;
+        room += (e - graph->start[i]) * (e - graph->start[i] - 2); /* neighbours lose it, and gain at most each other */
         x->first[x->count++] = i;
     }
     for (i = 0; i < n; ++i) x->number[i] = -1;
     for (k = 0; k < x->count; ++k) x->number[x->first[k]] = k;
     for (i = 0, k = x->count; i < n; ++i)
         if (x->number[i] < 0) x->first[k] = i, x->number[i] = k++;
-    return true;
-}
-
-/* Eliminates an independent set of nodes: in the graph `rest` that is left, the neighbours of each have become
-   adjacent. This is one round of the multiple minimum degree ordering (Liu 1985). Without normals the rest has half the
-   size and shows the mesh. False when there is no memory. */
-GPROJI_INTERNAL bool gproji_condense(gproji_condensation *x, gproji_heap *heap, const gproji_graph *graph) {
-    int32_t i, k, left, *mark, *adjacent, *weight;
-    int64_t *start, room, e, f, to = 0;
-    memset(x, 0, sizeof *x);
-    gproji_pool_start(&x->pool, heap);
-    if (!gproji_choose_condensed(x, graph)) return false;
-    left = graph->nodes - x->count;
-    room = graph->start[graph->nodes];
-    for (k = 0; k < x->count; ++k) { /* the neighbours lose this node, and gain at most each other */
-        int64_t degree = graph->start[x->first[k] + 1] - graph->start[x->first[k]];
-        room += degree * (degree - 2);
-    }
+    left = n - x->count;
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)left + 1, sizeof(int64_t));
     adjacent = gproji_take_ints(&x->pool, room);
     weight = gproji_take_ints(&x->pool, left);
-    mark = gproji_take_ints(&x->pool, graph->nodes);
     if (x->pool.failed) return false;
-    for (i = 0; i < graph->nodes; ++i) mark[i] = -1;
+    /* 3. Lists each neighbour, or in place of a condensed one the neighbours of that. */
+    mark = degree;
+    for (i = 0; i < n; ++i) mark[i] = -1;
     for (k = 0; k < left; ++k) {
         i = x->first[x->count + k];
         mark[i] = i;
         weight[k] = graph->weight[i];
         start[k] = to;
-        /* each neighbour, or the neighbours of a condensed one */
         for (e = graph->start[i]; e < graph->start[i + 1]; ++e) {
             int32_t j = graph->adjacent[e];
             bool condensed = x->number[j] < x->count;
@@ -4410,32 +4335,6 @@ typedef struct gproji_nd {
     gproji_band band;
 } gproji_nd;
 
-/* Takes the arrays: an entry for each node, or coordinate, and one more. */
-GPROJI_INTERNAL bool gproji_nd_take(gproji_nd *nd, gproji_pool *pool) {
-    gproji_nd_nodes *a = &nd->copy[0], *b = &nd->copy[1];
-    gproji_nd_halo *halo = &nd->halo;
-    gproji_nd_profile *profile = &nd->profile;
-    int64_t n = nd->graph->nodes, arcs = nd->graph->start[n];
-    int32_t **const ints[] = {
-        &a->name,           &a->weight,         &a->inner,        &a->outer,        &a->x,          &a->y,
-        &b->name,           &b->weight,         &b->inner,        &b->outer,        &b->x,          &b->y,
-        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
-        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
-        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
-        &profile->halo_high};
-    size_t k;
-    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(pool, n + 1);
-    for (k = 0; k < 2; ++k) {
-        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
-        nd->copy[k].adjacent = gproji_take_ints(pool, arcs);
-        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
-    }
-    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
-    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
-    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
-    return !pool->failed;
-}
-
 /* -- parts -- */
 
 /* Is b adjacent to node a and all other neighbours of a? mark: b for b and its neighbours, if mark[b] says so. */
@@ -4465,13 +4364,35 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* Chooses the nodes that are dissected and makes them the first part. total: the weight of all nodes. */
-GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
+/* Takes the arrays, chooses the nodes that are dissected, and makes them the first part. total: the weight of all nodes.
+   False when there is no memory. */
+GPROJI_INTERNAL bool gproji_nd_begin(gproji_nd *nd, gproji_pool *pool, int32_t total) {
     const gproji_graph *graph = nd->graph;
-    gproji_nd_nodes *c = &nd->copy[0];
-    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number = nd->number;
-    int64_t e, to = 0;
+    gproji_nd_nodes *c = &nd->copy[0], *other = &nd->copy[1];
+    gproji_nd_halo *halo = &nd->halo;
+    gproji_nd_profile *profile = &nd->profile;
+    int32_t **const ints[] = {
+        &c->name,           &c->weight,         &c->inner,        &c->outer,        &c->x,          &c->y,
+        &other->name,       &other->weight,     &other->inner,    &other->outer,    &other->x,      &other->y,
+        &nd->distance[0],   &nd->distance[1],   &nd->distance[2], &nd->distance[3], &nd->queue,     &nd->number,
+        &nd->coordinate[0], &nd->coordinate[1], &nd->sum[0],      &nd->sum[1],      &nd->order,     &halo->name,
+        &halo->boundary,    &halo->least,       &halo->most,      &profile->low,    &profile->high, &profile->halo_low,
+        &profile->halo_high};
+    int32_t a, b, i, head = 0, tail = 0, lightest = INT32_MAX, *number;
+    int64_t n = graph->nodes, e, to = 0;
     double weight = 0;
+    size_t k;
+    for (k = 0; k < sizeof ints / sizeof ints[0]; ++k) *ints[k] = gproji_take_ints(pool, n + 1);
+    for (k = 0; k < 2; ++k) {
+        nd->copy[k].from = (int64_t *)gproji_pool_take(pool, n, sizeof(int64_t));
+        nd->copy[k].adjacent = gproji_take_ints(pool, graph->start[n]);
+        nd->side[k] = (unsigned char *)gproji_pool_take(pool, n, 1);
+    }
+    halo->index = (int32_t *)gproji_pool_take_zeroed(pool, n, sizeof(int32_t));
+    profile->nearby = (unsigned char *)gproji_pool_take(pool, n + 1, 1);
+    nd->kind = (unsigned char *)gproji_pool_take_zeroed(pool, n, 1);
+    if (pool->failed) return false;
+    number = nd->number;
     /* 1. Leave out dense and dominated nodes. Domination is transitive: a dominated node's heaviest dominator stays. */
     gproji_mark_dense(graph, total, nd->kind, GPROJI_ND_DENSE);
     for (a = 0; a < graph->nodes; ++a) {
@@ -4517,6 +4438,7 @@ GPROJI_INTERNAL void gproji_nd_begin(gproji_nd *nd, int32_t total) {
     memset(&nd->stack[0], 0, sizeof nd->stack[0]);
     nd->stack[0].nodes = tail;
     nd->parts = tail > 0;
+    return true;
 }
 
 /* Writes the nodes on side `s` into the other copy, from index `to` on and with arcs from `e` on. nd->number:
@@ -4804,30 +4726,6 @@ GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t lev
     return tail + 1;
 }
 
-/* Finds all levels by breadth-first search from the sink, against the residual arcs. Is the source reached? */
-GPROJI_INTERNAL bool gproji_band_find_levels(gproji_band *band) {
-    int32_t head = 0, tail = 0, i, c;
-    bool found = false;
-    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
-    for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
-        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    return found;
-}
-
 /* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
    or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
    turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
@@ -4856,8 +4754,28 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
-    int32_t *path = band->queue, i, k, depth;
-    if (!gproji_band_find_levels(band)) return false;
+    int32_t *path = band->queue, i, k, c, depth, head = 0, tail = 0;
+    bool found = false;
+    /* 1. Levels, by breadth-first search from the sink against the residual arcs. Is the source reached? */
+    for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
+    for (i = 0; i < band->nodes; ++i)
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
+        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
+            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
+                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
+                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
+            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
+            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
+            for (c = band->start[v]; c < band->start[v + 1]; ++c)
+                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
+        }
+    }
+    if (!found) return false;
+    /* 2. Paths, depth first, from all nodes next to the source. */
     for (i = 0; i < band->nodes; ++i) {
         band->turn[2 * i] = band->unit[i] - 1;
         band->turn[2 * i + 1] = band->start[i];
@@ -4930,6 +4848,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     gproji_band *band = &nd->band;
     int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
     int64_t arcs = 0, units = 0, n;
+    size_t bytes;
     /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below, next to nodes above, belong to it. */
     for (i = 0; i < nd->nodes; ++i) {
         const int32_t *list = nd->here.adjacent + nd->here.from[i], *end = list + nd->here.inner[i];
@@ -4951,11 +4870,10 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     if (arcs > INT32_MAX || units > INT32_MAX) return false;
     /* 2. Lay the arrays out in one block, which serves all bands. */
     n = count;
-    if (!gproji_reserve(nd->heap, &band->block, &band->block_size,
-                        (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n, 1)) {
-        nd->failed = true;
-        return false;
-    }
+    bytes = (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n;
+    band->block = gproji_grow(nd->heap, band->block, &band->block_size, bytes, 1);
+    nd->failed = nd->failed || band->block_size < bytes;
+    if (nd->failed) return false;
     at = (int32_t *)band->block;
     band->id = at, at += n;
     band->start = at, at += n + 1;
@@ -5319,8 +5237,7 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
     memset(&nd, 0, sizeof nd);
     nd.heap = heap;
     nd.graph = graph;
-    nd.failed = !gproji_nd_take(&nd, &pool);
-    if (!nd.failed) gproji_nd_begin(&nd, total);
+    nd.failed = !gproji_nd_begin(&nd, &pool, total);
     while (nd.parts > 0 && !nd.failed) gproji_nd_next(&nd);
     if (!nd.failed) {
         /* Dominated nodes go right before the first node that dominates them, dense ones last. */
@@ -5442,45 +5359,22 @@ GPROJI_INLINED void gproji_expect_neighbours(const gproji_graph *graph, const in
     }
 }
 
-/* parent[k] = min { i > k : L_ik != 0 }. The first `apart` positions are not adjacent. ancestor: shortcuts, work. */
-GPROJI_INTERNAL void gproji_elimination_tree(const gproji_graph *graph, int32_t apart, const int32_t *order,
-                                             const int32_t *position, int32_t *parent, int32_t *ancestor) {
-    int32_t k, i, above;
-    int64_t e;
-    for (k = 0; k < graph->nodes; ++k) {
-        parent[k] = ancestor[k] = -1;
-        if (k < apart) continue;
-        gproji_expect_neighbours(graph, order, k);
-        for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            for (i = position[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
-                above = ancestor[i];
-                ancestor[i] = k; /* compresses the path: later walks jump to k */
-                if (above < 0) parent[i] = k;
-            }
-        }
-    }
-}
-
-/* Lists the children in a forest, ascending. Returns the first root; the roots are siblings. */
-GPROJI_INTERNAL int32_t gproji_children(int32_t count, const int32_t *parent, int32_t *child, int32_t *sibling) {
-    int32_t k, roots = -1;
-    for (k = 0; k < count; ++k) child[k] = -1;
-    for (k = count - 1; k >= 0; --k) {
-        int32_t *list = parent[k] < 0 ? &roots : &child[parent[k]];
+/* sequence[k] = the k-th node of a forest in postorder; siblings ascend. child, sibling: work. */
+GPROJI_INTERNAL void gproji_postorder(int32_t nodes, const int32_t *parent, int32_t *child, int32_t *sibling,
+                                      int32_t *sequence) {
+    int32_t count = 0, root = -1, k;
+    /* 1. Lists of children; the roots are siblings. */
+    for (k = 0; k < nodes; ++k) child[k] = -1;
+    for (k = nodes - 1; k >= 0; --k) {
+        int32_t *list = parent[k] < 0 ? &root : &child[parent[k]];
         sibling[k] = *list;
         *list = k;
     }
-    return roots;
-}
-
-/* sequence[k] = the k-th node in postorder. Uses up the lists of children. */
-GPROJI_INTERNAL void gproji_postorder(int32_t roots, const int32_t *parent, int32_t *child, const int32_t *sibling,
-                                      int32_t *sequence) {
-    int32_t count = 0, root;
-    for (root = roots; root >= 0; root = sibling[root]) {
+    /* 2. Walks down to a leaf, then up; the lists are used up. */
+    for (; root >= 0; root = sibling[root]) {
         int32_t at = root;
         for (;;) {
-            while (child[at] >= 0) { /* down to a leaf */
+            while (child[at] >= 0) {
                 int32_t down = child[at];
                 child[at] = sibling[down];
                 at = down;
@@ -5534,14 +5428,27 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
 }
 
 /* Finds elimination tree, column counts and their sums for the order in `out`, which becomes a postorder unless it must
-   be kept. apart: see gproji_elimination_tree. */
+   be kept. The first `apart` positions are not adjacent. */
 GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
-    int32_t n = out->nodes, i, k;
+    int32_t n = out->nodes, *ancestor = an->a, above, i, k;
     int64_t e;
     gproji_invert(n, out->order, out->position);
-    gproji_elimination_tree(graph, apart, out->order, out->position, an->parent, an->a);
+    /* 1. Elimination tree: parent[k] = min { i > k : L_ik != 0 }. */
+    for (k = 0; k < n; ++k) {
+        an->parent[k] = ancestor[k] = -1;
+        if (k < apart) continue;
+        gproji_expect_neighbours(graph, out->order, k);
+        for (e = graph->start[out->order[k]]; e < graph->start[out->order[k] + 1]; ++e) {
+            for (i = out->position[graph->adjacent[e]]; i >= 0 && i < k; i = above) {
+                above = ancestor[i];
+                ancestor[i] = k; /* compresses the path: later walks jump to k */
+                if (above < 0) an->parent[i] = k;
+            }
+        }
+    }
+    /* 2. Column counts. */
     if (an->keep_order) {
         /* Without a postorder, walks along every row's subtree: O(entries of L). */
         int32_t *mark = an->a;
@@ -5558,7 +5465,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
     } else {
         /* Renumbers by postorder: every subtree gets consecutive positions, and L keeps its entries. */
         int32_t *sequence = an->c, *renamed = an->d;
-        gproji_postorder(gproji_children(n, an->parent, an->a, an->b), an->parent, an->a, an->b, sequence);
+        gproji_postorder(n, an->parent, an->a, an->b, sequence);
         gproji_invert(n, sequence, renamed);
         for (k = 0; k < n; ++k) {
             int32_t up = an->parent[sequence[k]];
@@ -5570,7 +5477,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
         gproji_invert(n, out->order, out->position);
         gproji_column_counts(an);
     }
-    /* Sums entries and flops for exact L, without the zeros that relaxed supernodes add. */
+    /* 3. Sums entries and flops for exact L, without the zeros that relaxed supernodes add. */
     out->exact_entries = 0;
     out->flops = 0;
     for (k = 0; k < n; ++k) {
@@ -5719,8 +5626,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t n = out->nodes, count = an->supernodes, k, f, at = 0, column = 0;
     int32_t *sequence = an->a, *number = an->b, *order = an->c;
-    int32_t roots = gproji_children(count, an->super_parent, an->child, an->sibling);
-    gproji_postorder(roots, an->super_parent, an->child, an->sibling, sequence);
+    gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
     gproji_invert(count, sequence, number);
@@ -5828,33 +5734,11 @@ typedef struct gproji_family {
     int32_t before, after; /* in the ring */
 } gproji_family;
 
-/* Gives the children of front f the first gap that is large enough; `update` becomes the distance to their far ends. */
-GPROJI_INTERNAL void gproji_place_family(gproji_symbolic *out, int32_t f, const int32_t *task, gproji_family *family) {
-    int32_t ring = out->fronts, before = ring, after = family[ring].after, tries = 0, level, c;
-    int64_t size = 0;
-    for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-        size += gproji_update_entries(out->front[c].update_rows);
-    if (size == 0) return;
-    for (; family[after].low - family[before].high < size; after = family[after].after) {
-        before = after;
-        if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
-        if (after == ring) break;
-    }
-    family[f].before = before, family[f].after = after;
-    family[before].after = family[after].before = f;
-    family[f].low = family[f].high = family[before].high;
-    /* Children as scheduled: backwards in time the last one goes first. */
-    for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
-        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
-            if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
-                out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
-}
-
 /* Lays out the memory for schedule[begin..end-1] from `base` on; returns the end. family: fronts + 1 zeros. */
 GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin, int32_t end, int64_t base,
                                             const int32_t *task, gproji_family *family) {
     int64_t at = base, most;
-    int32_t ring = out->fronts, k, c;
+    int32_t ring = out->fronts, level, k, c;
     /* 1. Panels follow each other. */
     for (k = begin; k < end; ++k) {
         gproji_front *front = &out->front[out->schedule[k]];
@@ -5869,8 +5753,27 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
     most = at;
     for (k = end - 1; k >= begin; --k) {
         int32_t f = out->schedule[k], parent = out->front[f].parent;
+        int32_t before = ring, after = family[ring].after, tries = 0;
         gproji_family *own = parent < 0 ? NULL : &family[parent];
-        gproji_place_family(out, f, task, family);
+        int64_t size = 0;
+        for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
+            size += gproji_update_entries(out->front[c].update_rows);
+        if (size > 0) {
+            /* The children get the first gap that is large enough, and in `update` the distances to their far ends. */
+            for (; family[after].low - family[before].high < size; after = family[after].after) {
+                before = after;
+                if (++tries == GPROJI_FAMILY_TRIES) before = family[after = ring].before;
+                if (after == ring) break;
+            }
+            family[f].before = before, family[f].after = after;
+            family[before].after = family[after].before = f;
+            family[f].low = family[f].high = family[before].high;
+        }
+        /* As scheduled: backwards in time the last child goes first. */
+        for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
+            for (c = size > 0 ? out->front[f].child : -1; c >= 0; c = out->front[c].sibling)
+                if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
+                    out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
         if (at + family[f].high > most) most = at + family[f].high;
         at = out->front[f].panel;
         if (!own || own->high == own->low) continue; /* the parent belongs to another task */
@@ -5904,7 +5807,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     }
     for (f = 0; f < count; ++f)
         if (parent[f] >= 0) flops[parent[f]] += flops[f];
-    gproji_postorder(gproji_children(count, parent, an->child, an->sibling), parent, an->child, an->sibling, sequence);
+    gproji_postorder(count, parent, an->child, an->sibling, sequence);
     /* 2. Tasks: on each level whole subtrees within a share of all flops, small ones together. Threads on a front pass
        it to each other, which pays for large fronts only: hence the second level. Small problems are one task. */
     share[0] = sum > 2e7 ? sum / 24 : sum * 2;
@@ -6085,7 +5988,7 @@ GPROJI_INTERNAL void gproji_cholesky_forget(gproj_cholesky *c) {
 }
 
 GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
-    gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c);
+    gproj_cholesky *c = (gproj_cholesky *)gproji_create_object(host, sizeof *c, NULL);
     if (!c) return NULL;
     if (host) c->parallel = host->parallel;
     c->kernels = gproji_kernels_of(0);
@@ -6217,36 +6120,6 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
     return gproji_fail_memory(&c->error);
 }
 
-/* Checks that the arrays are a matrix in compressed columns. */
-GPROJI_INTERNAL gproj_code gproji_cholesky_check(gproj_cholesky *c, int32_t n, const int64_t *start,
-                                                 const int32_t *row) {
-    int32_t j;
-    int64_t p;
-    if (n < 0 || n > GPROJI_COLUMNS_MAX)
-        return gproji_fail(&c->error, n < 0 ? GPROJ_ERROR_ARGUMENT : GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "a matrix cannot have %d columns", n);
-    if (n == 0) return GPROJ_OK;
-    if (!start)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the column starts are missing");
-    if (start[0] != 0)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0,
-                           "the first column starts at %l, not 0", start[0]);
-    for (j = 0; j < n; ++j)
-        if (start[j + 1] < start[j])
-            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j,
-                               "column %d ends before it starts", j);
-    if (start[n] > INT64_MAX / 64)
-        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
-    if (!row && start[n] > 0)
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the row indices are missing");
-    for (j = 0; j < n; ++j)
-        for (p = start[j]; p < start[j + 1]; ++p)
-            if (row[p] < 0 || row[p] >= n)
-                return gproji_fail(&c->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
-                                   "column %d has an entry in row %d, which is not in 0..%d", j, row[p], n - 1);
-    return GPROJ_OK;
-}
-
 /* From a matrix in compressed columns to a graph with few nodes. */
 typedef struct gproji_compression {
     gproji_pool pool;
@@ -6306,8 +6179,7 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
     for (k = 0; x->order && k < n; ++k) {
         j = given ? (options->permutation ? options->permutation[k] : -1) : k;
-        if (j < 0 || j >= n || x->mark[j] >= 0)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "the order given is no permutation");
+        if (j < 0 || j >= n || x->mark[j] >= 0) return gproji_refuse(error, "the order given is no permutation");
         x->mark[j] = x->order[k] = j;
     }
     return GPROJ_OK;
@@ -6423,11 +6295,32 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     gproj_cholesky_options choice;
     gproji_compression x;
     gproj_code code;
+    int32_t j;
+    int64_t p;
     if (!c) return GPROJ_ERROR_ARGUMENT;
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
-    code = gproji_cholesky_check(c, n, start, row);
-    if (code != GPROJ_OK) return code;
+    /* 1. Are the arrays a matrix in compressed columns? */
+    if (n < 0) return gproji_refuse(&c->error, "a matrix cannot have %d columns", n);
+    if (n > GPROJI_COLUMNS_MAX)
+        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "a matrix cannot have %d columns", n);
+    if (n > 0 && !start) return gproji_refuse(&c->error, "the column starts are missing");
+    if (n > 0 && start[0] != 0)
+        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, 0,
+                           "the first column starts at %l, not 0", start[0]);
+    for (j = 0; j < n; ++j)
+        if (start[j + 1] < start[j])
+            return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, j,
+                               "column %d ends before it starts", j);
+    if (n > 0 && start[n] > INT64_MAX / 64)
+        return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
+    if (n > 0 && !row && start[n] > 0) return gproji_refuse(&c->error, "the row indices are missing");
+    for (j = 0; j < n; ++j)
+        for (p = start[j]; p < start[j + 1]; ++p)
+            if (row[p] < 0 || row[p] >= n)
+                return gproji_fail(&c->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
+                                   "column %d has an entry in row %d, which is not in 0..%d", j, row[p], n - 1);
+    /* 2. Compresses it further, analyses the nodes' graph, and places the entries. */
     memset(&choice, 0, sizeof choice);
     if (options) choice = *options;
     memset(&x, 0, sizeof x);
@@ -6518,19 +6411,29 @@ typedef struct gproji_gathering {
     int32_t chunk;    /* columns in one task */
 } gproji_gathering;
 
-/* Extend-adds the children's update matrices to one chunk. A task. */
+/* Clears one chunk, and extend-adds the children's update matrices to it right after: both in the cache. A task. */
 GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     const gproji_gathering *gathering = (const gproji_gathering *)data;
     const gproj_cholesky *c = gathering->c;
+    const gproji_panel *panel = gathering->panel;
     const gproji_symbolic *sy = &c->symbolic;
-    int32_t i, from = gathering->from + index * gathering->chunk;
-    int32_t to = gproji_min(from + gathering->chunk, gathering->to);
-    if (from < gathering->panel->shape.end || !gathering->panel->fresh)
-        gproji_clear_columns(gathering->panel, from, to); /* right before the additions: both in the cache */
+    int32_t from = gathering->from + index * gathering->chunk, to = gproji_min(from + gathering->chunk, gathering->to);
+    int32_t pivot_end = panel->shape.end, begin = gproji_max(from, panel->shift), end = gproji_min(to, pivot_end), i;
+    if (begin < end) {
+        ptrdiff_t at = gproji_shape_offset(panel->shape, begin) + gproji_shape_first(panel->shape, begin);
+        ptrdiff_t next = gproji_shape_offset(panel->shape, end) + gproji_shape_first(panel->shape, end);
+        gproji_clear(panel->values + at, next - at);
+    }
+    begin = gproji_max(begin, pivot_end) - pivot_end, end = to - pivot_end;
+    if (begin < end && (from < pivot_end || !panel->fresh)) {
+        ptrdiff_t at = gproji_update_offset(panel->update_rows, begin) + gproji_strip_begin(begin);
+        ptrdiff_t next = gproji_update_offset(panel->update_rows, end) + gproji_strip_begin(end);
+        gproji_clear(panel->update + at, next - at);
+    }
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
         gproji_addition add;
-        add.panel = gathering->panel, add.update = c->values + child->update, add.rows = child->update_rows;
+        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
         add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
         gproji_add_columns(&add, from, to);
     }
@@ -6596,15 +6499,6 @@ GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_fr
     }
 }
 
-/* Keeps the front's unknowns, and the partial right-hand side for its parent. */
-GPROJI_INTERNAL void gproji_leave_front(const gproj_cholesky *c, const gproji_front *front, int32_t side,
-                                        const double *z) {
-    const double *pivots = z + gproji_panel_shift(front->width);
-    double *x = c->solution + (size_t)side * (size_t)c->symbolic.columns;
-    memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
-    memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof(double));
-}
-
 /* -- sweeps over all fronts -- */
 
 /* Goes up through one task's fronts: eliminates them if there is a matrix to load, and solves L y = b with each, two
@@ -6613,10 +6507,11 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     const int32_t *level = sy->level_start + c->sweep.level;
-    int32_t task = level[0] + index, k, end = sy->task_start[task + 1], side, failed = -1;
-    double *z = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, *y = z + sy->most_rows;
+    int32_t task = level[0] + index, k, end = sy->task_start[task + 1], first, side, failed = -1;
+    double *rows_of[2]; /* of the two right-hand sides */
     /* A level with one task lends it all threads; else each has a task. */
     const gproj_parallel *parallel = c->sweep.level > 0 && level[1] - level[0] == 1 ? &c->parallel : NULL;
+    rows_of[0] = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, rows_of[1] = rows_of[0] + sy->most_rows;
     for (k = sy->task_start[task]; k < end; ++k) {
         const gproji_front *front = &sy->front[sy->schedule[k]];
         gproji_panel panel = gproji_front_panel(c, front);
@@ -6634,13 +6529,16 @@ GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
             if (front->below > 0) gproji_panel_update(parallel, &panel);
             if (panel.fresh) gproji_gather(c, sy->schedule[k], &panel, parallel, pivot_end, rows);
         }
-        for (side = 0; side < c->sides; side += 2) { /* a kernel reads L once for two */
-            bool two = side + 1 < c->sides;
-            gproji_enter_front(c, front, side, z);
-            if (two) gproji_enter_front(c, front, side + 1, y);
-            gproji_panel_forward(&panel, z, two ? y : NULL);
-            gproji_leave_front(c, front, side, z);
-            if (two) gproji_leave_front(c, front, side + 1, y);
+        for (first = 0; first < c->sides; first += 2) { /* a kernel reads L once for two */
+            int32_t last = gproji_min(first + 2, c->sides);
+            for (side = first; side < last; ++side) gproji_enter_front(c, front, side, rows_of[side - first]);
+            gproji_panel_forward(&panel, rows_of[0], last - first > 1 ? rows_of[1] : NULL);
+            for (side = first; side < last; ++side) { /* keeps unknowns, and the right-hand side for the parent */
+                const double *pivots = rows_of[side - first] + panel.shift;
+                double *x = c->solution + (size_t)side * (size_t)sy->columns;
+                memcpy(x + front->first, pivots, (size_t)front->width * sizeof *x);
+                memcpy(gproji_front_side(c, front, side), pivots + front->width, (size_t)front->below * sizeof *x);
+            }
         }
     }
     c->failed[task] = failed;
@@ -6742,7 +6640,7 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
         return GPROJ_FACTOR_FAILED;
     }
     if (!values && c->entries.count > 0) {
-        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "factor: the values are missing");
+        gproji_refuse(&c->error, "factor: the values are missing");
         return GPROJ_FACTOR_FAILED;
     }
     if (!gproji_cholesky_take_numeric(c)) return GPROJ_FACTOR_FAILED;
@@ -6759,8 +6657,7 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
         return gproji_fail(&c->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "solve: there is no factor to solve with");
     if (count < 0 || (count > 0 && c->symbolic.columns > 0 && (!b || !x)))
-        return gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "solve: %d right-hand sides, or an array is missing", count);
+        return gproji_refuse(&c->error, "solve: %d right-hand sides, or an array is missing", count);
     if (c->symbolic.columns == 0) return GPROJ_OK;
     for (r = 0; r < count; r += c->batch) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
@@ -6802,7 +6699,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
     }
     if (n == 0) return 0;
     if (!start || !row || !values || !b || !x) {
-        gproji_fail(&c->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "refine: an array is missing");
+        gproji_refuse(&c->error, "refine: an array is missing");
         return HUGE_VAL;
     }
     GPROJ_ASSERT(c->batch > 1);
@@ -6922,12 +6819,12 @@ GPROJI_INTERNAL bool gproji_squares_finite(double x) { return gproji_is_finite(x
 GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
     int32_t i, j;
     int64_t e;
-    if (!p) return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: there is no problem");
+    if (!p) return gproji_refuse(error, "least squares: there is no problem");
     if (p->rows < 0 || p->columns < 0 || p->columns > GPROJI_COLUMNS_MAX || p->rows > GPROJI_ROWS_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "least squares: %d rows and %d columns",
                            p->rows, p->columns);
     if ((p->columns > 0 && (!x || !p->start)) || (p->rows > 0 && !p->b))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "least squares: an array is missing");
+        return gproji_refuse(error, "least squares: an array is missing");
     if (!gproji_squares_finite(p->damping) || p->damping < 0)
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "least squares: the damping is negative or not a number");
@@ -6946,8 +6843,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
                                "least squares: column %d ends before it starts", j);
         if (p->start[j + 1] > p->start[j] && (!p->row || !p->value))
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "least squares: the rows or the values of the entries are missing");
+            return gproji_refuse(error, "least squares: the rows or the values of the entries are missing");
         for (e = p->start[j]; e < p->start[j + 1]; ++e) {
             if (p->row[e] < 0 || p->row[e] >= p->rows)
                 return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
@@ -7378,13 +7274,47 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     return a > 1e-6;
 }
 
-/* Runs the interior-point method, and polishes whenever it seems to know the active bounds. */
-GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
+/* -- the solution -- */
+
+/* Judges a first candidate, x or 0, moved between the bounds. */
+GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j)
+        s->trial[j] = s->interior.x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
+    s->best_kkt = HUGE_VAL;
+    return gproji_squares_judge(s);
+}
+
+/* Solves from the start x, cheapest attempts first. */
+GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     const gproji_interior *in = &s->interior;
     double tolerance = 1e-4, doubt = 0.02, first = 0;
     bool moves = true;
     int32_t j, c;
-    if (!gproji_squares_interior(s)) return false;
+    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
+       within the bounds that is nearest to 0. */
+    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
+    s->scale = gproji_squares_gradient(s, s->trial);
+    if (!(s->scale > 0)) s->scale = 1;
+    if (gproji_squares_propose(s, x)) return;
+    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
+    /* 2. A good start knows the active bounds. */
+    if (s->best_kkt <= 1e-3) {
+        for (j = 0; j < s->columns; ++j) {
+            double at = s->trial[j];
+            if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, at) > 0) continue;
+            if (at <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
+            if (at >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
+        }
+        if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+    }
+    /* 3. The minimum without bounds. */
+    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
+    memcpy(s->trial, in->x, (size_t)s->columns * sizeof(double));
+    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || in->pairs == 0) return;
+    gproji_squares_free_all(s);
+    /* 4. The interior-point method; polishes whenever it seems to know the active bounds. */
+    if (!gproji_squares_interior(s)) return;
     while (s->code == GPROJ_OK && s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
         double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
         bool last = !moves || gap <= 1e-22 * first, clear;
@@ -7404,54 +7334,14 @@ GPROJI_INTERNAL bool gproji_squares_iterate(gproji_squares *s) {
                 s->state[j] = in->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
                 s->trial[j] = in->sign[c] > 0 ? s->lower[j] : s->upper[j];
             }
-            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return true;
+            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
             gproji_squares_free_all(s);
-            if (last) return false;
+            if (last) return;
             tolerance *= 1e-2, doubt *= 0.1;
             gproji_squares_imbalance(s); /* `gradient` is the polish's */
         }
         moves = gproji_squares_advance(s);
     }
-    return false;
-}
-
-/* -- the solution -- */
-
-/* Judges a first candidate, x or 0, moved between the bounds. */
-GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) {
-    int32_t j;
-    for (j = 0; j < s->columns; ++j)
-        s->trial[j] = s->interior.x[j] = s->best[j] = gproji_squares_clip(s, j, x ? x[j] : 0);
-    s->best_kkt = HUGE_VAL;
-    return gproji_squares_judge(s);
-}
-
-/* Solves from the start x, cheapest attempts first. */
-GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
-    int32_t j;
-    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
-       within the bounds that is nearest to 0. */
-    for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
-    s->scale = gproji_squares_gradient(s, s->trial);
-    if (!(s->scale > 0)) s->scale = 1;
-    if (gproji_squares_propose(s, x)) return;
-    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
-    /* 2. A good start knows the active bounds. */
-    if (s->best_kkt <= 1e-3) {
-        for (j = 0; j < s->columns; ++j) {
-            double at = s->trial[j];
-            if (s->state[j] == GPROJI_VARIABLE_FIXED || gproji_squares_violation(s, j, at) > 0) continue;
-            if (at <= s->lower[j]) s->state[j] = GPROJI_VARIABLE_LOWER;
-            if (at >= s->upper[j]) s->state[j] = GPROJI_VARIABLE_UPPER;
-        }
-        if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
-    }
-    /* 3. The minimum without bounds, then the interior-point method. */
-    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
-    memcpy(s->trial, s->interior.x, (size_t)s->columns * sizeof(double));
-    if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || s->interior.pairs == 0) return;
-    gproji_squares_free_all(s);
-    gproji_squares_iterate(s);
 }
 
 /* Is `best` a solution, as far as rounding can tell? Residual and gradient are at `best`. */
@@ -7790,6 +7680,17 @@ typedef struct gproji_tallies {
     int32_t first_task; /* in the evaluation under way */
 } gproji_tallies;
 
+/* How far steps may go beyond a guard's rows. */
+typedef struct gproji_guarding {
+    double slack;        /* steps may violate its rows by so much */
+    int32_t activations; /* how often dormant rows were activated */
+} gproji_guarding;
+
+/* Entries that a group's `row`, `term`, `share` and `local.variable` have room for. */
+typedef struct gproji_group_room {
+    size_t row, term, share, local;
+} gproji_group_room;
+
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -7804,10 +7705,7 @@ typedef struct gproji_group {
                         at the other nodes, as n'(v_i - v_j) does around a face */
     bool has_wide;    /* some rows are dense */
     gproji_role role;
-    struct {
-        double slack;        /* steps may violate its rows by so much */
-        int32_t activations; /* how often dormant rows were activated */
-    } guard;
+    gproji_guarding guard;
 
     int32_t row_count;
     gproji_row *row;
@@ -7816,9 +7714,7 @@ typedef struct gproji_group {
     size_t term_count; /* all terms; compiled, with the copies behind the first `sources` */
     size_t sources;
     gproji_share *share; /* rows; NULL: all factors are 1 */
-    struct {
-        size_t row, term, share, local;
-    } capacity; /* entries that `row`, `term`, `share`, `local_variable` have room for */
+    gproji_group_room capacity;
 
     gproji_locals local;
     gproji_tallies tally;
@@ -7885,8 +7781,7 @@ typedef struct gproji_schur {
 typedef struct gproji_front_rows {
     int64_t *start;       /* the rows for front f are row[start[f] .. start[f + 1] - 1] */
     gproji_row_name *row; /* all narrow rows */
-    size_t count;         /* fronts */
-    size_t row_count, row_room;
+    int64_t row_count;
 } gproji_front_rows;
 
 /* Work arrays for steps with dense rows. */
@@ -7894,45 +7789,39 @@ typedef struct gproji_wide {
     double *matrix;             /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
     double *vector;             /* wide_count */
     double *residual, *balance; /* in refinement; NULL without dense rows */
-    size_t taken;               /* wide_count when these and `sides` were taken */
     int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
 } gproji_wide;
 
-/* Blocks of variables; lists by variable. */
+/* Blocks of variables, and local numbers while a row is added; lists by variable. */
 typedef struct gproji_blocks {
     int32_t *first;     /* the first variable in the same block */
     uint8_t *joined;    /* of a first one: has a narrow row several variables in its block? */
     uint8_t *auxiliary; /* local unknown, eliminated within an element and not regularised? */
+    int32_t *place;     /* local number of a variable that the row has named, else -1; set up for the first `places` */
+    int32_t places;
 } gproji_blocks;
-
-/* Local numbers while a row is added. */
-typedef struct gproji_naming {
-    int32_t *place; /* the first `count` variables: local number; else -1 */
-    int32_t count;
-} gproji_naming;
 
 /* Nodes of the adjacency graph, once compiled. */
 typedef struct gproji_nodes {
     int32_t count;
-    int32_t *of;       /* variables: node */
-    int32_t *first;    /* count + 1 (taken: variables + 1): first variable in each node, and the end */
-    int32_t variables; /* variable_count when this and the system's vectors were taken */
+    int32_t *of;    /* variables: node */
+    int32_t *first; /* count + 1 (taken: variables + 1): first variable in each node, and the end */
 } gproji_nodes;
 
-/* Vectors of a step, a number for each variable. */
+/* Vectors of a step, a number for each variable but for `hinges`. */
 typedef struct gproji_vectors {
-    double *gradient; /* sum w^2 phi grad phi; the right-hand side is its negative */
-    double *step;     /* dx: the first column of `sides` */
-    double *saved;    /* x before the step */
-    double *sum;      /* nearest: steps in a slide, added up; NULL before */
-    double *sides;    /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    double *gradient;     /* sum w^2 phi grad phi; the right-hand side is its negative */
+    double *step;         /* dx: the first column of `sides` */
+    double *saved;        /* x before the step */
+    double *sum;          /* nearest: steps in a slide, added up; NULL before */
+    double *sides;        /* 1 + wide_count columns: the right-hand sides -gradient and U, then dx and Y */
+    gproji_hinge *hinges; /* room for all rows in bounds, which a step may violate */
 } gproji_vectors;
 
-/* Rows in bounds that a step may violate. */
-typedef struct gproji_hinges {
-    gproji_hinge *list;
-    size_t taken; /* rows in all bounds */
-} gproji_hinges;
+/* Entries that a system's growing arrays have room for. */
+typedef struct gproji_room {
+    size_t x, block, place, joined, auxiliary, group;
+} gproji_room;
 
 struct gproj_system {
     gproji_heap own;
@@ -7947,32 +7836,30 @@ struct gproj_system {
     double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
-    gproji_naming naming;
     gproji_group *group;
     int32_t group_count;
-    struct {
-        size_t x, block, place, joined, auxiliary, group;
-    } capacity; /* entries that these arrays have room for */
+    gproji_room capacity;
 
     bool changed; /* a row got other numbers, or a group another schedule, since the last evaluation */
     bool solving; /* a solve is under way: refreshes and callbacks may change numbers, but add nothing */
     bool compiled;
-    bool evaluated; /* compiled, and the rows have had values and gradients since */
+    bool evaluated;    /* compiled, and the rows have had values and gradients since */
+    gproji_pool taken; /* holds all that compilation took, but for schur's */
     gproji_nodes nodes;
     gproji_front_rows fronts;
     gproji_vectors vector;
     int32_t wide_count;
     gproji_wide wide;
-    gproji_hinges hinges;
     gproji_schur schur;
 };
 
 /* -- life and building -- */
 
 GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
-    gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system));
+    gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system), NULL);
     if (!s) return NULL;
     gproji_error_clear(&s->error);
+    gproji_pool_start(&s->taken, &s->own);
     gproji_pool_start(&s->schur.pool, &s->own);
     if (host) s->host = *host;
     s->cholesky = gproj_cholesky_create(host);
@@ -8008,18 +7895,6 @@ GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_
 /* Counts the locals in all rows. */
 GPROJI_INLINE size_t gproji_local_count(const gproji_group *g) { return (size_t)g->row[g->row_count].local; }
 
-/* Lets i or j of a term name a local by the order in which the terms name them. number: new numbers of locals; -1: not
-   named yet. Returns the count named so far. */
-GPROJI_INLINE int32_t gproji_name_again(const int32_t *variable, int32_t *i, int32_t *number, int32_t named,
-                                        int32_t *local) {
-    if (number[*i] < 0) {
-        local[named] = variable[*i];
-        number[*i] = named++;
-    }
-    *i = number[*i];
-    return named;
-}
-
 /* Restores the locals' order as given, so that a new compilation does not depend on earlier ones. */
 GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
     int32_t number[GPROJI_WIDE_ROW], variable[GPROJI_WIDE_ROW], r, i, count, named;
@@ -8031,10 +7906,12 @@ GPROJI_INTERNAL void gproji_unsort_locals(gproji_group *g) {
         count = (int32_t)(row[1].local - row->local);
         for (i = 0; i < count; ++i) number[i] = -1, variable[i] = local[i];
         for (named = 0; term < end; ++term) {
-            gproj_term now = *term;
-            named = gproji_name_again(variable, &now.i, number, named, local);
-            if (now.j >= 0) named = gproji_name_again(variable, &now.j, number, named, local);
-            if (!g->common) *term = now;
+            int32_t p = term->i, q = term->j;
+            if (number[p] < 0) local[named] = variable[p], number[p] = named++;
+            if (q >= 0 && number[q] < 0) local[named] = variable[q], number[q] = named++;
+            if (g->common) continue;
+            term->i = number[p];
+            if (q >= 0) term->j = number[q];
         }
         row->term = row->source;
     }
@@ -8049,39 +7926,20 @@ GPROJI_INTERNAL void gproji_schur_forget(gproj_system *s) {
 
 /* Ends the compiled state and gives back all memory that compilation took. */
 GPROJI_INTERNAL void gproji_system_forget(gproj_system *s) {
-    size_t n = (size_t)s->nodes.variables;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         if (g->local.sorted) gproji_unsort_locals(g);
-        gproji_give(&s->own, g->local.gradient, gproji_local_count(g), sizeof *g->local.gradient);
-        gproji_give(&s->own, g->local.at, gproji_local_count(g), sizeof *g->local.at);
-        gproji_give(&s->own, g->tally.part, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        gproji_give(&s->own, g->multiplier, (size_t)g->row_count, sizeof *g->multiplier);
         g->local.gradient = NULL;
         g->local.at = NULL;
         g->tally.part = NULL;
         g->multiplier = NULL;
     }
-    gproji_give(&s->own, s->nodes.of, n, sizeof *s->nodes.of);
-    gproji_give(&s->own, s->nodes.first, n + 1, sizeof *s->nodes.first);
-    gproji_give(&s->own, s->fronts.start, s->fronts.count + 2, sizeof *s->fronts.start);
-    gproji_give(&s->own, s->fronts.row, s->fronts.row_room, sizeof *s->fronts.row);
-    gproji_give(&s->own, s->vector.gradient, n, sizeof *s->vector.gradient);
-    gproji_give(&s->own, s->vector.saved, n, sizeof *s->vector.saved);
-    gproji_give(&s->own, s->vector.sum, n, sizeof *s->vector.sum);
-    gproji_give(&s->own, s->vector.sides, (s->wide.taken + 1) * n, sizeof *s->vector.sides);
-    gproji_give(&s->own, s->wide.matrix, s->wide.taken * s->wide.taken, sizeof *s->wide.matrix);
-    gproji_give(&s->own, s->wide.vector, s->wide.taken, sizeof *s->wide.vector);
-    gproji_give(&s->own, s->wide.residual, n, sizeof *s->wide.residual);
-    gproji_give(&s->own, s->wide.balance, n, sizeof *s->wide.balance);
-    gproji_give(&s->own, s->hinges.list, s->hinges.taken, sizeof *s->hinges.list);
-    s->nodes.of = s->nodes.first = NULL;
+    memset(&s->nodes, 0, sizeof s->nodes);
     memset(&s->fronts, 0, sizeof s->fronts);
     memset(&s->wide, 0, sizeof s->wide);
-    s->vector.gradient = s->vector.step = s->vector.saved = s->vector.sum = s->vector.sides = NULL;
-    s->hinges.list = NULL;
-    s->hinges.taken = 0;
+    memset(&s->vector, 0, sizeof s->vector);
+    gproji_pool_give_all(&s->taken);
     gproji_schur_forget(s);
     s->compiled = s->evaluated = false;
 }
@@ -8100,7 +7958,7 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     gproji_give(&s->own, s->group, s->capacity.group, sizeof *s->group);
     gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
     gproji_give(&s->own, s->blocks.first, s->capacity.block, sizeof *s->blocks.first);
-    gproji_give(&s->own, s->naming.place, s->capacity.place, sizeof *s->naming.place);
+    gproji_give(&s->own, s->blocks.place, s->capacity.place, sizeof *s->blocks.place);
     gproji_give(&s->own, s->blocks.joined, s->capacity.joined, sizeof *s->blocks.joined);
     gproji_give(&s->own, s->blocks.auxiliary, s->capacity.auxiliary, sizeof *s->blocks.auxiliary);
     gproj_cholesky_destroy(s->cholesky);
@@ -8137,28 +7995,24 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
 /* Makes room for `count` further variables. */
 GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
-    void *x = s->x, *block = s->blocks.first, *place = s->naming.place, *joined = s->blocks.joined,
-         *auxiliary = s->blocks.auxiliary;
-    bool enough = gproji_reserve(&s->own, &x, &s->capacity.x, wanted, sizeof *s->x);
-    s->x = (double *)x;
-    enough = enough && gproji_reserve(&s->own, &block, &s->capacity.block, wanted, sizeof *s->blocks.first);
-    s->blocks.first = (int32_t *)block;
-    enough = enough && gproji_reserve(&s->own, &place, &s->capacity.place, wanted, sizeof *s->naming.place);
-    s->naming.place = (int32_t *)place;
-    enough = enough && gproji_reserve(&s->own, &joined, &s->capacity.joined, wanted, sizeof *s->blocks.joined);
-    s->blocks.joined = (uint8_t *)joined;
-    enough = enough && gproji_reserve(&s->own, &auxiliary, &s->capacity.auxiliary, wanted, sizeof *s->blocks.auxiliary);
-    s->blocks.auxiliary = (uint8_t *)auxiliary;
-    return enough;
+    gproji_blocks *b = &s->blocks;
+    gproji_room *room = &s->capacity;
+    s->x = (double *)gproji_grow(&s->own, s->x, &room->x, wanted, sizeof *s->x);
+    b->first = (int32_t *)gproji_grow(&s->own, b->first, &room->block, wanted, sizeof *b->first);
+    b->place = (int32_t *)gproji_grow(&s->own, b->place, &room->place, wanted, sizeof *b->place);
+    b->joined = (uint8_t *)gproji_grow(&s->own, b->joined, &room->joined, wanted, sizeof *b->joined);
+    b->auxiliary = (uint8_t *)gproji_grow(&s->own, b->auxiliary, &room->auxiliary, wanted, sizeof *b->auxiliary);
+    return room->x >= wanted && room->block >= wanted && room->place >= wanted && room->joined >= wanted &&
+           room->auxiliary >= wanted;
 }
 
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
     if (!gproji_system_is_open(s)) return -1;
     if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
-                    block);
+        gproji_refuse(&s->error,
+                      "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
+                      block);
         return -1;
     }
     if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
@@ -8206,53 +8060,41 @@ GPROJ_API gproj_schedule gproj_keep(double weight) { return gproji_make_schedule
 GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) { return gproji_make_schedule(weight, last); }
 GPROJ_API gproj_schedule gproj_guide(double weight) { return gproji_make_schedule(weight, GPROJ_LAST_GUIDING); }
 
-GPROJI_INTERNAL bool gproji_schedule_is_valid(gproj_schedule s) {
-    return s.weight >= 0 && s.weight <= gproji_weight_most && s.decay >= 0 && s.decay <= 1 &&
-           s.last >= GPROJ_LAST_GUIDING && (s.weight == 0 || (s.decay > 0 && s.last != 0));
-}
-
-GPROJI_INTERNAL gproj_code gproji_fail_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
-    return gproji_fail(
-        &s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+/* Refuses a schedule for the group with this name if it is not valid. */
+GPROJI_INTERNAL gproj_code gproji_check_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
+    if (schedule.weight >= 0 && schedule.weight <= gproji_weight_most && schedule.decay >= 0 && schedule.decay <= 1 &&
+        schedule.last >= GPROJ_LAST_GUIDING && (schedule.weight == 0 || (schedule.decay > 0 && schedule.last != 0)))
+        return GPROJ_OK;
+    return gproji_refuse(
+        &s->error,
         "the schedule of group '%s' (weight %g, decay %g, last %d) needs 0 <= weight <= 1e50, 0 < decay <= 1, "
         "last >= 1: make it by gproj_keep, gproj_fade or gproj_guide",
         name, schedule.weight, schedule.decay, schedule.last);
 }
 
-/* Cuts names that are too long. */
-GPROJI_INTERNAL void gproji_set_group_name(gproji_group *g, const char *name) {
-    size_t length = strlen(name);
-    if (length >= GPROJ_NAME_SIZE) length = GPROJ_NAME_SIZE - 1;
-    memset(g->name, 0, sizeof g->name);
-    memcpy(g->name, name, length);
-}
-
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
     gproji_group *g;
-    void *groups, *rows = NULL;
-    bool enough;
+    size_t count, length;
     if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
         return -1;
     }
-    if (!gproji_schedule_is_valid(group->schedule)) {
-        gproji_fail_schedule(s, group->name, group->schedule);
-        return -1;
+    if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
+    count = (size_t)s->group_count;
+    s->group = (gproji_group *)gproji_grow(&s->own, s->group, &s->capacity.group, count + 1, sizeof *s->group);
+    g = count < s->capacity.group ? &s->group[count] : NULL;
+    if (g) {
+        memset(g, 0, sizeof *g);
+        g->row = (gproji_row *)gproji_grow(&s->own, NULL, &g->capacity.row, 1, sizeof *g->row);
     }
-    groups = s->group;
-    enough = gproji_reserve(&s->own, &groups, &s->capacity.group, (size_t)s->group_count + 1, sizeof *s->group);
-    s->group = (gproji_group *)groups;
-    g = enough ? &s->group[s->group_count] : NULL;
-    if (g) memset(g, 0, sizeof *g);
-    /* An empty group has one entry, at which locals end. */
-    if (!g || !gproji_reserve(&s->own, &rows, &g->capacity.row, 1, sizeof *g->row)) {
+    if (!g || !g->row) {
         gproji_fail_memory(&s->error);
         return -1;
     }
-    g->row = (gproji_row *)rows;
-    memset(&g->row[0], 0, sizeof g->row[0]);
-    gproji_set_group_name(g, group->name);
+    memset(&g->row[0], 0, sizeof g->row[0]); /* at which the locals of an empty group end */
+    length = strlen(group->name);
+    memcpy(g->name, group->name, length < GPROJ_NAME_SIZE ? length : GPROJ_NAME_SIZE - 1); /* cuts longer names */
     g->kind = group->kind;
     g->place = group->place;
     g->global = group->global;
@@ -8305,7 +8147,7 @@ GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *s, int32_t group, g
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_group(s, group))
         return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group, "there is no group %d", group);
-    if (!gproji_schedule_is_valid(schedule)) return gproji_fail_schedule(s, s->group[group].name, schedule);
+    if (gproji_check_schedule(s, s->group[group].name, schedule) != GPROJ_OK) return s->error.code;
     s->group[group].schedule = schedule;
     s->changed = true;
     return GPROJ_OK;
@@ -8360,48 +8202,16 @@ GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structur
     return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
-/* Reports the first term that does not fit this system. */
-GPROJI_INTERNAL void gproji_refuse_terms(gproj_system *s, const gproji_group *g, int32_t count,
-                                         const gproj_term *terms) {
-    int32_t t;
-    for (t = 0; t < count; ++t) {
-        if (terms[t].i >= 0 && terms[t].i < s->variable_count && terms[t].j >= -1 && terms[t].j < s->variable_count)
-            continue;
-        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
-                    terms[t].i, terms[t].j);
-        return;
-    }
-    gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
-                "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
-}
-
-/* Makes room for further rows, terms and locals. */
-GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
-    size_t wanted = (size_t)g->row_count + rows + 1; /* with the one that ends them */
-    void *row = g->row, *term = g->term, *share = g->share, *local = g->local.variable;
-    bool enough = gproji_reserve(&s->own, &row, &g->capacity.row, wanted, sizeof *g->row);
-    g->row = (gproji_row *)row;
-    enough = enough && gproji_reserve(&s->own, &term, &g->capacity.term, g->term_count + terms, sizeof *g->term);
-    g->term = (gproj_term *)term;
-    enough = enough && gproji_reserve(&s->own, &local, &g->capacity.local, gproji_local_count(g) + locals,
-                                      sizeof *g->local.variable);
-    g->local.variable = (int32_t *)local;
-    enough = enough && (!share || gproji_reserve(&s->own, &share, &g->capacity.share, wanted, sizeof *g->share));
-    g->share = (gproji_share *)share;
-    return enough;
-}
-
 /* Counts the variables that the terms name. */
 GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const gproj_term *terms) {
     int32_t t, named = 0;
     for (t = 0; t < count; ++t) {
-        if (s->naming.place[terms[t].i] < 0) s->naming.place[terms[t].i] = named++;
-        if (terms[t].j >= 0 && s->naming.place[terms[t].j] < 0) s->naming.place[terms[t].j] = named++;
+        if (s->blocks.place[terms[t].i] < 0) s->blocks.place[terms[t].i] = named++;
+        if (terms[t].j >= 0 && s->blocks.place[terms[t].j] < 0) s->blocks.place[terms[t].j] = named++;
     }
     for (t = 0; t < count; ++t) {
-        s->naming.place[terms[t].i] = -1;
-        if (terms[t].j >= 0) s->naming.place[terms[t].j] = -1;
+        s->blocks.place[terms[t].i] = -1;
+        if (terms[t].j >= 0) s->blocks.place[terms[t].j] = -1;
     }
     return named;
 }
@@ -8423,13 +8233,25 @@ GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) 
     return false;
 }
 
+/* Grows the arrays for further rows, terms and locals. */
+GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
+    gproji_group_room *room = &g->capacity;
+    rows += (size_t)g->row_count + 1; /* with the one that ends them */
+    terms += g->term_count, locals += gproji_local_count(g);
+    terms += terms == 0, locals += locals == 0; /* a row without terms has arrays, too */
+    g->row = (gproji_row *)gproji_grow(&s->own, g->row, &room->row, rows, sizeof *g->row);
+    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &room->term, terms, sizeof *g->term);
+    g->local.variable = (int32_t *)gproji_grow(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+    if (g->share) g->share = (gproji_share *)gproji_grow(&s->own, g->share, &room->share, rows, sizeof *g->share);
+    return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= rows);
+}
+
 /* Makes this room, or fails. */
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
         locals > GPROJI_TERMS_MAX - gproji_local_count(g))
-        gproji_refuse_rows(s, g);
-    else if (!gproji_reserve_rows(s, g, rows, terms + 1, locals + 1)) /* also of a row without terms */
-        gproji_fail_memory(&s->error);
+        return gproji_refuse_rows(s, g);
+    if (!gproji_reserve_rows(s, g, rows, terms, locals)) gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
 
@@ -8476,12 +8298,18 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
+    for (t = 0; !valid && t < count; ++t)
+        if ((uint32_t)terms[t].i >= end || (uint32_t)terms[t].j + 1 > end)
+            gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
+                        "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
+                        terms[t].i, terms[t].j);
     if (!valid) {
-        gproji_refuse_terms(s, g, count, terms);
+        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
         return -1;
     }
     if (s->compiled) gproji_system_forget(s);
-    for (; s->naming.count < s->variable_count; ++s->naming.count) s->naming.place[s->naming.count] = -1;
+    for (; s->blocks.places < s->variable_count; ++s->blocks.places) s->blocks.place[s->blocks.places] = -1;
     /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
     if (!gproji_has_room(g, 1, (size_t)count, 2 * (size_t)count) &&
         !gproji_make_room(s, g, 1, (size_t)count, (size_t)gproji_count_named(s, count, terms)))
@@ -8490,7 +8318,7 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     /* 3. Numbers the locals in the order in which terms name them. */
     local = g->local.variable + row->local;
     to = g->term + row->term;
-    for (place = s->naming.place, t = 0; t < count; ++t) {
+    for (place = s->blocks.place, t = 0; t < count; ++t) {
         int32_t p = terms[t].i, q = terms[t].j;
         if (place[p] < 0) local[named] = p, place[p] = named++;
         if (q >= 0 && place[q] < 0) local[named] = q, place[q] = named++;
@@ -8590,6 +8418,7 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                                           double constant) {
     gproji_group *g;
     uint32_t t, count;
+    bool finite = gproji_is_finite(constant);
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
     if (!gproji_system_has_row(s, group, row))
@@ -8597,7 +8426,8 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
                            group);
     g = &s->group[group];
     count = g->row[row].terms;
-    if (!gproji_is_finite(constant) || (coefficients && !gproji_are_finite(coefficients, count)))
+    for (t = 0; coefficients && t < count; ++t) finite &= gproji_is_finite(coefficients[t]);
+    if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
     if (coefficients && g->common && !gproji_own_terms(s, g))
@@ -8734,53 +8564,45 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* Gives back spare room in a growing array. */
-GPROJI_INTERNAL bool gproji_trim(gproji_heap *heap, void **block, size_t *capacity, size_t count, size_t size) {
-    void *moved;
-    if (*capacity == count || !*block) return true;
-    moved = gproji_retake(heap, *block, *capacity, count, size);
-    if (!moved) return false;
-    *block = moved;
+/* Gives back spare room in a growing array. Returns the array; without memory that is the old one. */
+GPROJI_INTERNAL void *gproji_trim(gproji_heap *heap, void *block, size_t *capacity, size_t count, size_t size) {
+    void *moved = block && *capacity != count ? gproji_retake(heap, block, *capacity, count, size) : NULL;
+    if (!moved) return block;
     *capacity = count;
-    return true;
+    return moved;
 }
 
 /* Step 1: the variables of a joined block are a node. */
 GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
-    size_t n = (size_t)s->variable_count;
-    int32_t i, v;
-    bool done;
-    s->nodes.variables = s->variable_count;
-    s->nodes.of = (int32_t *)gproji_take(&s->own, n, sizeof *s->nodes.of);
-    s->nodes.first = (int32_t *)gproji_take(&s->own, n + 1, sizeof *s->nodes.first);
-    done = s->nodes.of && s->nodes.first;
+    gproji_nodes *nodes = &s->nodes;
+    int32_t n = s->variable_count, i, v;
+    bool trimmed = true;
     /* Spare room is given back now, before the analysis needs much memory. */
-    for (i = 0; done && i < s->group_count; ++i) {
+    for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        size_t rows = (size_t)g->row_count + 1, terms = g->term_count, locals = gproji_local_count(g);
-        void *row = g->row, *term = g->term, *local = g->local.variable;
-        done = gproji_trim(&s->own, &row, &g->capacity.row, rows, sizeof *g->row);
-        g->row = (gproji_row *)row;
-        done = done && gproji_trim(&s->own, &term, &g->capacity.term, terms, sizeof *g->term);
-        g->term = (gproj_term *)term;
-        done = done && gproji_trim(&s->own, &local, &g->capacity.local, locals, sizeof *g->local.variable);
-        g->local.variable = (int32_t *)local;
+        gproji_group_room *room = &g->capacity;
+        size_t rows = (size_t)g->row_count + 1, locals = gproji_local_count(g);
+        g->row = (gproji_row *)gproji_trim(&s->own, g->row, &room->row, rows, sizeof *g->row);
+        g->term = (gproj_term *)gproji_trim(&s->own, g->term, &room->term, g->term_count, sizeof *g->term);
+        g->local.variable = (int32_t *)gproji_trim(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+        trimmed = trimmed && room->row == rows && room->term == g->term_count && room->local == locals;
     }
-    if (!done) return false;
-    s->nodes.count = 0;
-    for (v = 0; v < s->variable_count; ++v)
-        if (v == s->blocks.first[v] || !s->blocks.joined[s->blocks.first[v]]) s->nodes.first[s->nodes.count++] = v;
-    s->nodes.first[s->nodes.count] = s->variable_count;
-    for (i = 0; i < s->nodes.count; ++i)
-        for (v = s->nodes.first[i]; v < s->nodes.first[i + 1]; ++v) s->nodes.of[v] = i;
+    nodes->of = gproji_take_ints(&s->taken, n);
+    nodes->first = gproji_take_ints(&s->taken, (int64_t)n + 1);
+    if (!trimmed || s->taken.failed) return false;
+    for (v = 0; v < n; ++v)
+        if (v == s->blocks.first[v] || !s->blocks.joined[s->blocks.first[v]]) nodes->first[nodes->count++] = v;
+    nodes->first[nodes->count] = n;
+    for (i = 0; i < nodes->count; ++i)
+        for (v = nodes->first[i]; v < nodes->first[i + 1]; ++v) nodes->of[v] = i;
     return true;
 }
 
 /* Bipartite graph that joins rows and nodes, with fewer than 2^32 edges. Two nodes are adjacent if they share a row. */
 typedef struct gproji_incidence {
+    gproji_pool pool; /* holds the arrays */
     int32_t node_count;
     uint32_t row_count;
-    size_t row_room, entry_room, node_entry_room;
     uint32_t *row_start;  /* row_count + 1 */
     int32_t *row_node;    /* nodes of each row */
     uint32_t *node_start; /* node_count + 1 */
@@ -8788,94 +8610,31 @@ typedef struct gproji_incidence {
     uint32_t *mark;       /* node_count: work */
 } gproji_incidence;
 
-GPROJI_INTERNAL void gproji_incidence_give(gproji_heap *heap, gproji_incidence *in) {
-    gproji_give(heap, in->row_start, in->row_room, sizeof *in->row_start);
-    gproji_give(heap, in->row_node, in->entry_room, sizeof *in->row_node);
-    gproji_give(heap, in->node_start, (size_t)in->node_count + 1, sizeof *in->node_start);
-    gproji_give(heap, in->node_row, in->node_entry_room, sizeof *in->node_row);
-    gproji_give(heap, in->mark, (size_t)in->node_count, sizeof *in->mark);
-    memset(in, 0, sizeof *in);
-}
-
-/* Takes the incidence of narrow rows and nodes, without rows that join nothing more: those with one node, or with the
-   first nodes that the next row has. False: no memory. */
-GPROJI_INTERNAL bool gproji_incidence_take(gproj_system *s, gproji_incidence *in) {
-    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
-    int32_t i, r, v;
-    in->node_count = s->nodes.count;
-    in->row_room = 1;
-    for (i = 0; i < s->group_count; ++i) {
-        in->row_room += (size_t)s->group[i].row_count;
-        in->entry_room += gproji_local_count(&s->group[i]);
-    }
-    if (in->row_room > GPROJI_TERMS_MAX || in->entry_room > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
-    in->row_start = (uint32_t *)gproji_take(&s->own, in->row_room, sizeof *in->row_start);
-    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_start = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count + 1, sizeof *in->node_start);
-    in->mark = (uint32_t *)gproji_take_zeroed(&s->own, (size_t)in->node_count, sizeof *in->mark);
-    if (!in->row_start || !in->row_node || !in->node_start || !in->mark) return false;
-    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; r < g->row_count; ++r) {
-            const int32_t *local = g->local.variable + g->row[r].local, *last = g->local.variable + g->row[r + 1].local;
-            int32_t *node = in->row_node + end;
-            uint32_t count = 0, known = 0;
-            if (g->row[r].wide) continue;
-            for (++stamp; local < last; ++local) {
-                int32_t own = s->nodes.of[*local];
-                if (in->mark[own] == stamp) continue;
-                in->mark[own] = stamp;
-                node[count++] = own;
-            }
-            if (count < 2) continue;
-            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
-            while (known < end - before && known < count && node[known] == in->row_node[before + known]) ++known;
-            if (end == before || known < end - before) {
-                known = 0;
-                in->row_start[in->row_count++] = before = end;
-            }
-            for (e = known; e < count; ++e) {
-                in->row_node[before + e] = node[e];
-                in->node_start[node[e]]++;
-            }
-            end = before + count;
-        }
-    }
-    in->row_start[in->row_count] = end;
-    in->node_entry_room = end;
-    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
-    if (!in->node_row) return false;
-    /* 2. Transposes: sums up the counts, and fills each list from its end. */
-    for (v = 1; v <= in->node_count; ++v) in->node_start[v] += in->node_start[v - 1];
-    for (k = in->row_count; k-- > 0;)
-        for (e = in->row_start[k]; e < in->row_start[k + 1]; ++e) in->node_row[--in->node_start[in->row_node[e]]] = k;
-    return true;
-}
-
-/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back. Node v has
-   first[v + 1] - first[v] unknowns. */
+/* Step 3: analyses the incidence's adjacency graph for the factorisation, and gives the incidence back, also one that
+   could not be taken. Node v has first[v + 1] - first[v] unknowns. */
 GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidence *in, const int32_t *first) {
     const uint32_t *row_start = in->row_start;
     uint32_t *mark = in->mark;
     const int32_t nodes = in->node_count;
     gproj_code code = GPROJ_ERROR_MEMORY;
     size_t room = 0, filled = 0;
-    int64_t *start = (int64_t *)gproji_take(&s->own, (size_t)nodes + 1, sizeof *start);
-    int32_t *size = (int32_t *)gproji_take(&s->own, (size_t)nodes, sizeof *size), *adjacent = NULL, v;
-    bool done = start && size;
-    memset(mark, 0, (size_t)nodes * sizeof *mark);
+    int64_t *start;
+    int32_t *size, *adjacent = NULL, v;
+    gproji_pool pool;
+    bool done;
+    gproji_pool_start(&pool, &s->own);
+    start = (int64_t *)gproji_pool_take(&pool, (int64_t)nodes + 1, sizeof *start);
+    size = gproji_take_ints(&pool, nodes);
+    done = !in->pool.failed && !pool.failed;
+    if (done) memset(mark, 0, (size_t)nodes * sizeof *mark);
     for (v = 0; done && v < nodes; ++v) {
         const uint32_t own = (uint32_t)v + 1, *rows = in->node_row + in->node_start[v], *row;
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
         size_t most = filled + 1; /* as if the node's rows had nothing in common; never none */
         for (row = rows; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
-        if (most > room) {
-            void *block = adjacent;
-            done = gproji_reserve(&s->own, &block, &room, most, sizeof *adjacent);
-            adjacent = (int32_t *)block;
-            if (!done) break;
-        }
+        adjacent = (int32_t *)gproji_grow(&s->own, adjacent, &room, most, sizeof *adjacent);
+        done = most <= room;
+        if (!done) break;
         /* Lists the nodes in all rows at v, each once; v itself is not. */
         start[v] = (int64_t)filled;
         size[v] = first[v + 1] - first[v];
@@ -8889,18 +8648,77 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
             }
         }
     }
-    gproji_incidence_give(&s->own, in); /* before the analysis, which needs much memory itself */
+    gproji_pool_give_all(&in->pool); /* before the analysis, which needs much memory itself */
     if (done) start[nodes] = (int64_t)filled;
     if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
-    gproji_give(&s->own, start, (size_t)nodes + 1, sizeof *start);
-    gproji_give(&s->own, size, (size_t)nodes, sizeof *size);
     gproji_give(&s->own, adjacent, room, sizeof *adjacent);
+    gproji_pool_give_all(&pool);
     return code;
+}
+
+/* Step 3 for the matrix with all variables: lists the incidence of narrow rows and nodes, without rows that join
+   nothing more (those with one node, or with the first nodes that the next row has), and analyses the graph. */
+GPROJI_INTERNAL gproj_code gproji_analyse_whole(gproj_system *s) {
+    uint32_t end = 0, before = 0, stamp = 0, k, e; /* before: the last row's nodes begin there */
+    size_t rows = 1, entries = 0;
+    gproji_incidence in;
+    int32_t i, r, v;
+    for (i = 0; i < s->group_count; ++i) {
+        rows += (size_t)s->group[i].row_count;
+        entries += gproji_local_count(&s->group[i]);
+    }
+    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) {
+        gproji_refuse_rows(s, NULL);
+        return GPROJ_ERROR_SIZE;
+    }
+    memset(&in, 0, sizeof in);
+    gproji_pool_start(&in.pool, &s->own);
+    in.node_count = s->nodes.count;
+    in.row_start = (uint32_t *)gproji_pool_take(&in.pool, (int64_t)rows, sizeof *in.row_start);
+    in.row_node = (int32_t *)gproji_pool_take(&in.pool, (int64_t)entries, sizeof *in.row_node);
+    in.node_start = (uint32_t *)gproji_pool_take_zeroed(&in.pool, (int64_t)in.node_count + 1, sizeof(uint32_t));
+    in.mark = (uint32_t *)gproji_pool_take_zeroed(&in.pool, in.node_count, sizeof *in.mark);
+    if (in.pool.failed) return gproji_analyse_graph(s, &in, s->nodes.first);
+    /* 1. Lists each row's nodes behind the last one's, and counts rows at each node. */
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; r < g->row_count; ++r) {
+            const int32_t *local = g->local.variable + g->row[r].local, *last = g->local.variable + g->row[r + 1].local;
+            int32_t *node = in.row_node + end;
+            uint32_t count = 0, known = 0;
+            if (g->row[r].wide) continue;
+            for (++stamp; local < last; ++local) {
+                int32_t own = s->nodes.of[*local];
+                if (in.mark[own] == stamp) continue;
+                in.mark[own] = stamp;
+                node[count++] = own;
+            }
+            if (count < 2) continue;
+            /* A row that begins with all nodes in the last one replaces it: it joins them, too. */
+            while (known < end - before && known < count && node[known] == in.row_node[before + known]) ++known;
+            if (end == before || known < end - before) {
+                known = 0;
+                in.row_start[in.row_count++] = before = end;
+            }
+            for (e = known; e < count; ++e) {
+                in.row_node[before + e] = node[e];
+                in.node_start[node[e]]++;
+            }
+            end = before + count;
+        }
+    }
+    in.row_start[in.row_count] = end;
+    in.node_row = (uint32_t *)gproji_pool_take(&in.pool, end, sizeof *in.node_row);
+    /* 2. Transposes: sums up the counts, and fills each list from its end. */
+    for (v = 1; v <= in.node_count; ++v) in.node_start[v] += in.node_start[v - 1];
+    for (k = in.node_row ? in.row_count : 0; k-- > 0;)
+        for (e = in.row_start[k]; e < in.row_start[k + 1]; ++e) in.node_row[--in.node_start[in.row_node[e]]] = k;
+    return gproji_analyse_graph(s, &in, s->nodes.first);
 }
 
 /* Prefetches rows that follow the k-th, with or without gradients: a front's rows come from all over the memory. */
 GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gradient) {
-    if (k + GPROJI_ROWS_AHEAD < (int64_t)s->fronts.row_count) {
+    if (k + GPROJI_ROWS_AHEAD < s->fronts.row_count) {
         gproji_row_name far_one = s->fronts.row[k + GPROJI_ROWS_AHEAD];
         gproji_row_name near_one = s->fronts.row[k + GPROJI_ROWS_AHEAD / 2];
         const gproji_group *g = &s->group[near_one.group];
@@ -8913,82 +8731,18 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
     }
 }
 
-/* A permutation that sorts a row's locals. */
-typedef struct gproji_sorting {
-    uint16_t *from; /* the local that comes to each place, before the sort */
-    uint64_t order; /* 4 bits each; 0: all are there already; 1: not all, and they are too many for that */
-} gproji_sorting;
-
-/* Permutations met last, by the number of locals and by the order of three among them. Most rows are sorted like the
-   last one, since few have more than three nodes. */
-typedef struct gproji_sortings {
-    gproji_sorting last[GPROJI_COPY_LOCALS + 1][8];
-    gproji_sorting many; /* for the row at hand if it has more */
-    uint16_t last_from[GPROJI_COPY_LOCALS + 1][8][GPROJI_COPY_LOCALS];
-    uint16_t many_from[GPROJI_WIDE_ROW];
-} gproji_sortings;
-
-/* Starts with the identity. */
-GPROJI_INTERNAL void gproji_start_sorting(gproji_sorting *sorting, uint16_t *from, int32_t count) {
-    int32_t i;
-    for (i = 0; i < count; ++i) from[i] = (uint16_t)i;
-    sorting->from = from;
-    sorting->order = 0;
-}
-
-/* Sorts a row's locals by columns, which are written to `at`. Returns the permutation. */
-GPROJI_INLINE const gproji_sorting *gproji_sort_locals(gproji_sortings *all, const int32_t *GPROJI_RESTRICT column,
-                                                       int32_t count, int32_t *GPROJI_RESTRICT local,
-                                                       int32_t *GPROJI_RESTRICT at) {
-    gproji_sorting *sorting = &all->many;
-    int32_t variable[GPROJI_WIDE_ROW], i, k, last = -1;
-    uint16_t *from;
-    bool ascending = true, moved = false;
-    /* 1. Guesses the permutation from three comparisons. */
-    if (count > GPROJI_COPY_LOCALS) {
-        gproji_start_sorting(sorting, all->many_from, count);
-    } else {
-        int32_t one = column[local[0]], two = column[local[count > 1]], three = column[local[count - 1]];
-        sorting = &all->last[count][(one < two) + 2 * (two < three) + 4 * (one < three)];
-    }
-    /* 2. Applies it. */
-    from = sorting->from;
-    memcpy(variable, local, (size_t)count * sizeof *local);
-    for (i = 0; i < count; ++i) {
-        local[i] = variable[from[i]];
-        at[i] = column[local[i]];
-        ascending &= at[i] > last;
-        last = at[i];
-    }
-    if (ascending) return sorting;
-    /* 3. Corrects it by insertion: rows are short, and their terms name a node's variables in order. */
-    for (i = 1; i < count; ++i) {
-        int32_t own_at = at[i], own = local[i];
-        uint16_t own_from = from[i];
-        for (k = i; k > 0 && at[k - 1] > own_at; --k) at[k] = at[k - 1], local[k] = local[k - 1], from[k] = from[k - 1];
-        at[k] = own_at, local[k] = own, from[k] = own_from;
-    }
-    for (i = 0, sorting->order = 0; i < count; ++i) {
-        sorting->order = sorting->order << 4 | (from[i] & 15);
-        moved |= from[i] != i;
-    }
-    if (!moved || count > GPROJI_COPY_LOCALS) sorting->order = moved;
-    return sorting;
-}
-
 /* Cache entry: a copy made from shared terms for a permutation. */
 typedef struct gproji_copy {
-    uint64_t order; /* see gproji_sorting */
+    uint64_t order; /* the permutation, 4 bits each */
     uint32_t source, term;
     int32_t locals; /* 0: none */
 } gproji_copy;
 
-/* Lets terms name the locals by their new numbers. */
-GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals,
-                                       const gproji_sorting *sorting) {
+/* Lets terms name the locals by their new numbers. key: see gproji_place_group. */
+GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t locals, const uint64_t *key) {
     gproj_term *end = term + count;
     int32_t rank[GPROJI_WIDE_ROW], i;
-    for (i = 0; i < locals; ++i) rank[sorting->from[i]] = i;
+    for (i = 0; i < locals; ++i) rank[key[i] & 0xffff] = i;
     for (; term < end; ++term) {
         term->i = rank[term->i];
         if (term->j >= 0) term->j = rank[term->j];
@@ -8997,53 +8751,64 @@ GPROJI_INLINE void gproji_rename_terms(gproj_term *term, uint32_t count, int32_t
 
 /* Gives the row a copy with terms for the permuted locals: another row's if `cache` has it. False: no memory. */
 GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals,
-                                       const gproji_sorting *sorting, gproji_copy *cache) {
-    const uint64_t order = sorting->order;
+                                       uint64_t order, const uint64_t *key, gproji_copy *cache) {
     gproji_copy *known = cache + (order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS));
-    bool enough, cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
+    bool cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
     size_t wanted = g->term_count + row->terms;
-    void *term = g->term;
     if (cached && known->order == order && known->source == row->source && known->locals == locals) {
         row->term = known->term;
         return true;
     }
     if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
-    enough = gproji_reserve(&s->own, &term, &g->capacity.term, wanted, sizeof *g->term);
-    g->term = (gproj_term *)term;
-    if (!enough) return false;
+    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &g->capacity.term, wanted, sizeof *g->term);
+    if (g->capacity.term < wanted) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
-    gproji_rename_terms(g->term + g->term_count, row->terms, locals, sorting);
+    gproji_rename_terms(g->term + g->term_count, row->terms, locals, key);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
     if (cached) known->order = order, known->source = row->source, known->locals = locals, known->term = row->term;
     return true;
 }
 
-/* Sorts the locals in each narrow row by columns, which are written to local_at. The first one names the row's front,
+/* Sorts the locals in each narrow row by columns, which are written to local.at. The first one names the row's front,
    -1: none; fronts.start counts the rows of each. host: fronts by columns. False: no memory. */
 GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const int32_t *column, const int32_t *host,
                                         int32_t *front) {
     gproji_copy copy[1 << GPROJI_COPY_BITS];
-    gproji_sortings sortings;
-    int32_t r, i, k;
+    uint64_t key[GPROJI_WIDE_ROW]; /* the column and, in the lowest 16 bits, the local's number before */
+    int32_t variable[GPROJI_WIDE_ROW], r, i, k;
     memset(copy, 0, sizeof copy);
-    for (i = 0; i <= GPROJI_COPY_LOCALS; ++i)
-        for (k = 0; k < 8; ++k) gproji_start_sorting(&sortings.last[i][k], sortings.last_from[i][k], i);
     g->local.sorted = true;
     for (r = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        int32_t *local = g->local.variable + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local), *at = g->local.at + row->local;
-        const gproji_sorting *sorting;
+        int32_t *local = g->local.variable + row->local, *at = g->local.at + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        uint64_t order = 0, last = 0;
+        bool moved = false;
         front[r] = -1;
         if (row->wide || count == 0) continue;
-        sorting = gproji_sort_locals(&sortings, column, count, local, at);
-        if (sorting->order && !g->common) {
-            gproji_rename_terms(g->term + row->term, row->terms, count, sorting);
-        } else if (sorting->order && !gproji_copy_terms(s, g, row, count, sorting, copy)) {
-            /* The terms are still for the old order: restores it, so that the rows stay valid. */
-            int32_t variable[GPROJI_WIDE_ROW];
-            for (i = 0; i < count; ++i) variable[sorting->from[i]] = local[i];
+        /* 1. Sorts by insertion: rows are short, and their terms name a node's variables in order. */
+        for (i = 0; i < count; ++i) {
+            uint64_t own = (uint64_t)column[local[i]] << 16 | (uint64_t)i;
+            variable[i] = local[i];
+            if (own >= last) {
+                key[i] = last = own;
+                continue;
+            }
+            for (k = i; k > 0 && key[k - 1] > own; --k) key[k] = key[k - 1];
+            key[k] = own;
+            moved = true;
+        }
+        for (i = 0; i < count; ++i) {
+            uint64_t from = key[i] & 0xffff;
+            at[i] = (int32_t)(key[i] >> 16);
+            local[i] = variable[from];
+            order = order << 4 | (from & 15);
+        }
+        /* 2. Lets the terms follow. Without memory they keep the old order, so that is restored. */
+        if (moved && !g->common) {
+            gproji_rename_terms(g->term + row->term, row->terms, count, key);
+        } else if (moved && !gproji_copy_terms(s, g, row, count, order, key, copy)) {
             memcpy(local, variable, (size_t)count * sizeof *local);
             return false;
         }
@@ -9053,40 +8818,31 @@ GPROJI_INTERNAL bool gproji_place_group(gproj_system *s, gproji_group *g, const 
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_take_local_places(gproj_system *s) {
-    int32_t i;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        g->local.at = (int32_t *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.at);
-        if (!g->local.at) return false;
-    }
-    return true;
-}
-
 /* Step 4, for the matrix with all variables: finds each row's front, and the locals' padded rows there. */
 GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     const gproji_symbolic *sy = &s->cholesky->symbolic;
     gproji_front_rows *rows = &s->fronts;
-    size_t n = (size_t)s->variable_count, all = 0, row;
-    int32_t *column = (int32_t *)gproji_take(&s->own, n, sizeof *column); /* variables */
-    int32_t *at = (int32_t *)gproji_take(&s->own, n, sizeof *at);         /* columns: front; then padded row */
-    int32_t *front, i, r, f;                                              /* rows, group by group; -1: none */
-    int64_t k;
+    int32_t *column, *at; /* of variables; by columns: front, and then padded row */
+    int32_t *front;       /* of rows, group by group; -1: none */
+    int32_t i, r, f;
+    int64_t all = 0, row, k;
+    gproji_pool pool;
     bool done;
-    for (i = 0; i < s->group_count; ++i) all += (size_t)s->group[i].row_count;
-    front = (int32_t *)gproji_take(&s->own, all, sizeof *front);
-    rows->count = (size_t)sy->fronts;
-    rows->row_room = all;
-    rows->start = (int64_t *)gproji_take_zeroed(&s->own, rows->count + 2, sizeof *rows->start);
-    rows->row = (gproji_row_name *)gproji_take(&s->own, all, sizeof *rows->row);
-    done = column && at && front && rows->start && rows->row && gproji_take_local_places(s);
+    for (i = 0; i < s->group_count; ++i) all += s->group[i].row_count;
+    gproji_pool_start(&pool, &s->own);
+    column = gproji_take_ints(&pool, s->variable_count);
+    at = gproji_take_ints(&pool, s->variable_count);
+    front = gproji_take_ints(&pool, all);
+    rows->start = (int64_t *)gproji_pool_take_zeroed(&s->taken, (int64_t)sy->fronts + 2, sizeof *rows->start);
+    rows->row = (gproji_row_name *)gproji_pool_take(&s->taken, all, sizeof *rows->row);
+    done = !s->taken.failed && !pool.failed;
     /* 1. Sorts each row's locals by columns; the first one names the front. */
     if (done) gproji_invert(s->variable_count, s->cholesky->permutation, column);
     for (f = 0; done && f < sy->fronts; ++f)
         for (i = 0; i < sy->front[f].width; ++i) at[sy->front[f].first + i] = f;
     for (i = 0, row = 0; done && i < s->group_count; ++i) {
         done = gproji_place_group(s, &s->group[i], column, at, front + row);
-        row += (size_t)s->group[i].row_count;
+        row += s->group[i].row_count;
     }
     /* 2. Sorts the rows by fronts: start[f + 2] counts those for front f, and start[f + 1] moves on to their end. */
     for (f = 0; done && f < sy->fronts; ++f) rows->start[f + 2] += rows->start[f + 1];
@@ -9097,7 +8853,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
             rows->row[k].group = i;
             rows->row[k].row = r;
         }
-    if (done) rows->row_count = (size_t)rows->start[rows->count];
+    if (done) rows->row_count = rows->start[sy->fronts];
     /* 3. Turns columns into padded rows, front by front. */
     for (f = 0; done && f < sy->fronts; ++f) {
         if (rows->start[f] < rows->start[f + 1]) gproji_map_rows(s->cholesky, f, NULL, at);
@@ -9109,98 +8865,42 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
             for (; local < end; ++local) *local = at[*local];
         }
     }
-    gproji_give(&s->own, column, n, sizeof *column);
-    gproji_give(&s->own, at, n, sizeof *at);
-    gproji_give(&s->own, front, all, sizeof *front);
+    gproji_pool_give_all(&pool);
     return done;
-}
-
-/* Steps 3 and 4, for the matrix with all variables. */
-GPROJI_INTERNAL gproj_code gproji_compile_whole(gproj_system *s) {
-    gproji_incidence in;
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    memset(&in, 0, sizeof in);
-    if (gproji_incidence_take(s, &in)) code = gproji_analyse_graph(s, &in, s->nodes.first);
-    gproji_incidence_give(&s->own, &in);
-    return code == GPROJ_OK && !gproji_compile_places(s) ? GPROJ_ERROR_MEMORY : code;
 }
 
 /* Step 5: takes the arrays that iterations need, once; asks for all of them even if one is refused, see
    gproji_foretell. */
 GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
-    size_t n = (size_t)s->variable_count, wide = (size_t)s->wide_count;
+    int64_t n = s->variable_count, wide = s->wide_count, hinges = 0;
+    gproji_pool *pool = &s->taken;
     int32_t i, r;
     uint32_t t;
-    bool done = true;
     if (s->vector.sides) return true;
-    s->hinges.taken = 0;
+    pool->failed = false; /* a forecast's */
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->local.gradient = (double *)gproji_take(&s->own, gproji_local_count(g), sizeof *g->local.gradient);
-        g->tally.part = (gproji_tally *)gproji_take(&s->own, (size_t)gproji_group_tasks(g), sizeof *g->tally.part);
-        done = done && g->local.gradient && g->tally.part;
-        if (g->kind == GPROJ_BOUND) s->hinges.taken += (size_t)g->row_count;
+        g->local.gradient = (double *)gproji_pool_take(pool, (int64_t)gproji_local_count(g), sizeof(double));
+        g->tally.part = (gproji_tally *)gproji_pool_take(pool, gproji_group_tasks(g), sizeof(gproji_tally));
+        if (g->kind == GPROJ_BOUND) hinges += g->row_count;
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
-        for (r = 0; done && g->has_wide && r < g->row_count; ++r) {
+        for (r = 0; !pool->failed && g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
-    if (wide + 1 > SIZE_MAX / 2 / sizeof(double) / (n > wide ? n : wide + 1)) /* a product overflows: refused */
-        return gproji_take(&s->own, SIZE_MAX, 1) != NULL;
-    s->wide.taken = wide;
-    s->hinges.list = (gproji_hinge *)gproji_take(&s->own, s->hinges.taken, sizeof *s->hinges.list);
-    s->vector.gradient = (double *)gproji_take(&s->own, n, sizeof *s->vector.gradient);
-    s->vector.saved = (double *)gproji_take(&s->own, n, sizeof *s->vector.saved);
-    s->vector.sides = s->vector.step = (double *)gproji_take(&s->own, (wide + 1) * n, sizeof *s->vector.sides);
-    s->wide.matrix = (double *)gproji_take(&s->own, wide * wide, sizeof *s->wide.matrix);
-    s->wide.vector = (double *)gproji_take(&s->own, wide, sizeof *s->wide.vector);
-    done = done && s->hinges.list && s->vector.gradient && s->vector.saved && s->vector.sides && s->wide.matrix &&
-           s->wide.vector;
-    if (wide == 0) return done;
-    s->wide.residual = (double *)gproji_take(&s->own, n, sizeof *s->wide.residual);
-    s->wide.balance = (double *)gproji_take(&s->own, n, sizeof *s->wide.balance);
-    return done && s->wide.residual && s->wide.balance;
+    s->vector.hinges = (gproji_hinge *)gproji_pool_take(pool, hinges, sizeof(gproji_hinge));
+    s->vector.gradient = (double *)gproji_pool_take(pool, n, sizeof(double));
+    s->vector.saved = (double *)gproji_pool_take(pool, n, sizeof(double));
+    s->vector.sides = s->vector.step = (double *)gproji_pool_take(pool, (wide + 1) * n, sizeof(double));
+    s->wide.matrix = (double *)gproji_pool_take(pool, wide * wide, sizeof(double));
+    s->wide.vector = (double *)gproji_pool_take(pool, wide, sizeof(double));
+    if (wide > 0) s->wide.residual = (double *)gproji_pool_take(pool, n, sizeof(double));
+    if (wide > 0) s->wide.balance = (double *)gproji_pool_take(pool, n, sizeof(double));
+    return !pool->failed;
 }
 
 /* -- evaluation -- */
-
-/* Evaluates a row's phi and gradient. Rows without weight get zeros; a contiguous linear row keeps its gradient. */
-GPROJI_INLINE void gproji_evaluate_row(const gproj_system *s, const gproji_group *g, gproji_row *row) {
-    const int32_t *variable = g->local.variable + row->local;
-    const gproj_term *term = g->term + row->term, *end = term + row->terms;
-    const double *x = s->x;
-    double *gradient = g->local.gradient + row->local;
-    double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
-    if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
-    row->phi = 0;
-    if (!(row->weight > 0)) row->active = false;
-    if (!(row->weight > 0)) return;
-    if (row->run) {
-        size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
-        phi += gproji_dot(gradient, x + variable[0], row->terms);
-        term = end;
-    }
-    for (; term < end; ++term) {
-        double value = term->a * x[variable[term->i]], other;
-        if (term->j < 0) {
-            gradient[term->i] += term->a;
-        } else {
-            other = x[variable[term->j]];
-            gradient[term->i] += term->a * other;
-            gradient[term->j] += value;
-            value *= other;
-        }
-        phi += value;
-        size += fabs(value);
-    }
-    /* Large terms that cancel leave rounding: it would look like a residual. */
-    if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
-    row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
-    /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
-    row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
-                  (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
-}
 
 /* Partial merit and largest residual in one chunk, for the weight `tallied`. */
 GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
@@ -9221,17 +8921,52 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally.part[task] = tally;
 }
 
-/* Evaluates one chunk, a part of a group's rows. */
+/* Evaluates phi and gradients in one chunk, a part of a group's rows. Rows without weight get zeros; a contiguous linear
+   row keeps its gradient. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
-    int32_t task, r, end;
+    gproji_row *row, *row_end;
+    const double *x = s->x;
     while (index < g->tally.first_task || index - g->tally.first_task >= gproji_group_tasks(g)) ++g;
-    task = index - g->tally.first_task;
-    r = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task);
-    end = gproji_chunk_start(g->row_count, gproji_group_tasks(g), task + 1);
-    for (; r < end; ++r) gproji_evaluate_row(s, g, &g->row[r]);
-    gproji_tally_task(g, task);
+    index -= g->tally.first_task;
+    row = g->row + gproji_chunk_start(g->row_count, gproji_group_tasks(g), index);
+    row_end = g->row + gproji_chunk_start(g->row_count, gproji_group_tasks(g), index + 1);
+    for (; row < row_end; ++row) {
+        const int32_t *variable = g->local.variable + row->local;
+        const gproj_term *term = g->term + row->term, *end = term + row->terms;
+        double *gradient = g->local.gradient + row->local;
+        double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
+        if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+        row->phi = 0;
+        if (!(row->weight > 0)) row->active = false;
+        if (!(row->weight > 0)) continue;
+        if (row->run) {
+            size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
+            phi += gproji_dot(gradient, x + variable[0], row->terms);
+            term = end;
+        }
+        for (; term < end; ++term) {
+            double value = term->a * x[variable[term->i]], other;
+            if (term->j < 0) {
+                gradient[term->i] += term->a;
+            } else {
+                other = x[variable[term->j]];
+                gradient[term->i] += term->a * other;
+                gradient[term->j] += value;
+                value *= other;
+            }
+            phi += value;
+            size += fabs(value);
+        }
+        /* Large terms that cancel leave rounding: it would look like a residual. */
+        if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
+        row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
+        /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
+        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
+                      (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
+    }
+    gproji_tally_task(g, index);
 }
 
 /* Evaluates all rows at the current x. */
@@ -9489,37 +9224,6 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
 /* Solves for the step with the factor of A. */
 GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
 
-/* residual = -gradient - A dx. Does U m balance it, as it should? epsilon: in A. */
-GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
-    double *residual = s->wide.residual, *balance = s->wide.balance, left = 0, size = 0;
-    gproji_row_name at = {0, -1};
-    const gproji_row *row;
-    int32_t i, r, v;
-    /* 1. A dx, from all narrow rows that act. */
-    for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * s->vector.step[v];
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            row = &g->row[r];
-            if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, s->vector.step), residual);
-        }
-    }
-    /* 2. U m at this step. */
-    memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
-    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        const gproji_group *g = &s->group[at.group];
-        gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, s->vector.step)), balance);
-    }
-    /* 3. Their difference, against the right-hand side. */
-    for (v = 0; v < s->variable_count; ++v) {
-        residual[v] = -s->vector.gradient[v] - residual[v];
-        left = gproji_fmax(left, fabs(residual[v] - balance[v]));
-        size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
-    }
-    return left <= 1e-9 * size;
-}
-
 /* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
    product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
    the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
@@ -9528,15 +9232,41 @@ GPROJI_INTERNAL bool gproji_is_balanced(gproj_system *s, double epsilon) {
    |U U'||dx|, as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat
    narrow ones, or each other. */
 GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
-    double *residual = s->wide.residual;
-    int32_t v;
+    double *residual = s->wide.residual, *balance = s->wide.balance, *step = s->vector.step;
+    const gproji_row *row;
+    int32_t i, r, v;
     if (wide == 0 || parts <= gproji_parts_most) return;
-    while (rounds-- > 0 && !gproji_is_balanced(s, epsilon)) {
+    for (; rounds > 0; --rounds) {
+        gproji_row_name at = {0, -1};
+        double left = 0, size = 0;
+        /* 1. A dx, from all narrow rows that act. */
+        for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * step[v];
+        for (i = 0; i < s->group_count; ++i) {
+            const gproji_group *g = &s->group[i];
+            for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+                row = &g->row[r];
+                if (row->wide || !row->active) continue;
+                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, step), residual);
+            }
+        }
+        /* 2. U m at this step, which should balance the residual -gradient - A dx. */
+        memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
+        while ((row = gproji_next_wide_row(s, &at)) != NULL) {
+            const gproji_group *g = &s->group[at.group];
+            gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, step)), balance);
+        }
+        for (v = 0; v < s->variable_count; ++v) {
+            residual[v] = -s->vector.gradient[v] - residual[v];
+            left = gproji_fmax(left, fabs(residual[v] - balance[v]));
+            size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
+        }
+        if (left <= 1e-9 * size) return;
+        /* 3. A correction. */
         gproji_wide_values(s, true);
         gproji_cholesky_forward(s->cholesky, 1, residual, residual);
         gproji_wide_correct(s, wide, residual);
         gproji_cholesky_backward(s->cholesky, residual, residual);
-        for (v = 0; v < s->variable_count; ++v) s->vector.step[v] += residual[v];
+        for (v = 0; v < s->variable_count; ++v) step[v] += residual[v];
     }
 }
 
@@ -9591,13 +9321,6 @@ enum {
 
 /* -- compilation -- */
 
-/* Entry in `of_place` for the element with a row at this kind of place, a face or a vertex; NULL: the row is at another
-   kind, or the place's number is too large for a table with as many entries as nodes. */
-GPROJI_INLINE int32_t *gproji_place_element(const gproj_system *s, const gproji_group *g, const gproji_row *row,
-                                            gproj_place place, int32_t *of_place) {
-    return g->place == place && row->element >= 0 && row->element < s->nodes.count ? of_place + row->element : NULL;
-}
-
 /* Elements met so far, by local unknowns and by place; -1 at first. Each array has room for all nodes. */
 typedef struct gproji_elements {
     int32_t *of_node; /* local unknowns */
@@ -9608,8 +9331,8 @@ typedef struct gproji_elements {
    several elements, which cannot be eliminated one by one then. */
 GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g, const gproji_row *row,
                                           const gproji_elements *elements, int32_t *belongs) {
-    int32_t auxiliary = -1, kept = -1, *own, *face;
-    bool many = false;
+    int32_t auxiliary = -1, kept = -1, *own = NULL, *face = NULL;
+    bool many = false, placed = row->element >= 0 && row->element < s->nodes.count; /* in tables by nodes */
     int64_t l;
     *belongs = GPROJI_NOWHERE;
     if (g->idle || row->dormant) return true;
@@ -9628,9 +9351,9 @@ GPROJI_INTERNAL bool gproji_schur_belongs(gproj_system *s, const gproji_group *g
         return true;
     }
     /* Local unknowns decide; other rows join a face's element if there is one, or that of a vertex. */
-    face = gproji_place_element(s, g, row, GPROJ_PLACE_FACE, elements->of_face);
-    own = auxiliary >= 0 ? &elements->of_node[auxiliary] : face;
-    if (!own) own = gproji_place_element(s, g, row, GPROJ_PLACE_VERTEX, elements->of_vertex);
+    if (placed && g->place == GPROJ_PLACE_FACE) own = face = elements->of_face + row->element;
+    if (placed && g->place == GPROJ_PLACE_VERTEX) own = elements->of_vertex + row->element;
+    if (auxiliary >= 0) own = elements->of_node + auxiliary;
     *belongs = own && *own >= 0 ? *own : s->schur.elements++;
     if (own) *own = *belongs;
     if (face) *face = *belongs;
@@ -9719,15 +9442,13 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
     d->row_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, elements + 2, sizeof(int64_t));
     d->own_start = (int64_t *)gproji_pool_take_zeroed(&d->pool, nodes + 2, sizeof(int64_t));
     d->row = (gproji_row_name *)gproji_pool_take(&d->pool, rows, sizeof(gproji_row_name));
-    d->auxiliary = (int32_t *)gproji_pool_take(&d->pool, elements, sizeof(int32_t));
+    d->auxiliary = gproji_take_ints(&d->pool, elements);
     d->zero_sum = (uint8_t *)gproji_pool_take(&d->pool, elements, 1);
-    d->first = (int32_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int32_t));
+    d->first = gproji_take_ints(&d->pool, elements + 1);
     d->link_start = (int64_t *)gproji_pool_take(&d->pool, elements + 1, sizeof(int64_t));
     for (i = 0; i < s->group_count; ++i) links += (int64_t)gproji_local_count(&s->group[i]); /* at most */
-    d->link_node = (int32_t *)gproji_pool_take(&d->pool, links, sizeof(int32_t));
-    if (!d->row_start || !d->own_start || !d->row || !d->auxiliary || !d->zero_sum || !d->first || !d->link_start ||
-        !d->link_node)
-        return false;
+    d->link_node = gproji_take_ints(&d->pool, links);
+    if (d->pool.failed) return false;
     /* 1. Counting sort: rows by elements, and behind them those with a single node by these. */
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r, ++to) {
@@ -9772,15 +9493,17 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
 /* Step 2: should steps be found by multipliers? Then d->on becomes true. False: no memory. */
 GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     const double limit = gproji_schur_limit(s);
-    size_t nodes = (size_t)s->nodes.count, rows = 0, v;
+    int64_t nodes = s->nodes.count, rows = 0, v;
     gproji_elements elements;
     int32_t *mark, *belongs, *to, i, r; /* belongs: by rows, group by group */
-    bool enough, pays;
+    gproji_pool pool;
+    bool enough, pays = true;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
-    for (i = 0; i < s->group_count; ++i) rows += (size_t)s->group[i].row_count;
-    mark = (int32_t *)gproji_take(&s->own, 3 * nodes, sizeof *mark);
-    belongs = (int32_t *)gproji_take(&s->own, rows, sizeof *belongs);
-    enough = pays = mark && belongs;
+    for (i = 0; i < s->group_count; ++i) rows += s->group[i].row_count;
+    gproji_pool_start(&pool, &s->own);
+    mark = gproji_take_ints(&pool, 3 * nodes);
+    belongs = gproji_take_ints(&pool, rows);
+    enough = !pool.failed;
     if (enough) {
         for (v = 0; v < 3 * nodes; ++v) mark[v] = -1;
         elements.of_node = mark, elements.of_face = mark + nodes, elements.of_vertex = mark + 2 * nodes;
@@ -9789,41 +9512,45 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
             for (r = 0; pays && r < s->group[i].row_count; ++r)
                 pays = gproji_schur_belongs(s, &s->group[i], &s->group[i].row[r], &elements, to++) &&
                        s->schur.elements <= limit;
-        if (pays && s->schur.elements > 0) enough = gproji_schur_find(s, belongs, (int64_t)rows, mark);
+        if (pays && s->schur.elements > 0) enough = gproji_schur_find(s, belongs, rows, mark);
     }
-    gproji_give(&s->own, mark, 3 * nodes, sizeof *mark);
-    gproji_give(&s->own, belongs, rows, sizeof *belongs);
+    gproji_pool_give_all(&pool);
     if (!s->schur.on) gproji_schur_forget(s);
     return enough;
 }
 
-/* Takes the incidence whose rows are the system's nodes, and whose nodes are the elements. False: no memory. */
-GPROJI_INTERNAL bool gproji_schur_incidence(gproj_system *s, gproji_incidence *in) {
+/* Step 3, for multipliers: lists the incidence whose rows are the system's nodes, and whose nodes are the elements, and
+   analyses the graph. */
+GPROJI_INTERNAL gproj_code gproji_analyse_elements(gproj_system *s) {
     const gproji_schur *d = &s->schur;
     int64_t links = d->link_start[d->elements];
+    gproji_incidence in;
     uint32_t k;
     int32_t v, e;
-    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
-    in->node_count = d->elements;
-    in->row_count = (uint32_t)s->nodes.count;
-    in->row_room = (size_t)s->nodes.count + 2;
-    in->entry_room = in->node_entry_room = (size_t)links;
-    in->row_start = (uint32_t *)gproji_take_zeroed(&s->own, in->row_room, sizeof *in->row_start);
-    in->row_node = (int32_t *)gproji_take(&s->own, in->entry_room, sizeof *in->row_node);
-    in->node_row = (uint32_t *)gproji_take(&s->own, in->node_entry_room, sizeof *in->node_row);
-    in->node_start = (uint32_t *)gproji_take(&s->own, (size_t)d->elements + 1, sizeof *in->node_start);
-    in->mark = (uint32_t *)gproji_take(&s->own, (size_t)d->elements, sizeof *in->mark);
-    if (!in->row_start || !in->row_node || !in->node_row || !in->node_start || !in->mark) return false;
+    if ((uint64_t)links > GPROJI_TERMS_MAX) {
+        gproji_refuse_rows(s, NULL);
+        return GPROJ_ERROR_SIZE;
+    }
+    memset(&in, 0, sizeof in);
+    gproji_pool_start(&in.pool, &s->own);
+    in.node_count = d->elements;
+    in.row_count = (uint32_t)s->nodes.count;
+    in.row_start = (uint32_t *)gproji_pool_take_zeroed(&in.pool, (int64_t)s->nodes.count + 2, sizeof(uint32_t));
+    in.row_node = gproji_take_ints(&in.pool, links);
+    in.node_row = (uint32_t *)gproji_pool_take(&in.pool, links, sizeof(uint32_t));
+    in.node_start = (uint32_t *)gproji_pool_take(&in.pool, (int64_t)d->elements + 1, sizeof(uint32_t));
+    in.mark = (uint32_t *)gproji_pool_take(&in.pool, d->elements, sizeof(uint32_t));
+    if (in.pool.failed) return gproji_analyse_graph(s, &in, d->first);
     /* Links are the elements' lists; sorted by nodes they are the nodes'. */
-    for (k = 0; k < links; ++k) in->row_start[d->link_node[k] + 2]++;
-    for (v = 0; v < s->nodes.count; ++v) in->row_start[v + 2] += in->row_start[v + 1];
+    for (k = 0; k < links; ++k) in.row_start[d->link_node[k] + 2]++;
+    for (v = 0; v < s->nodes.count; ++v) in.row_start[v + 2] += in.row_start[v + 1];
     for (e = 0; e < d->elements; ++e)
-        for (k = in->node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
-            in->node_row[k] = (uint32_t)d->link_node[k];
-            in->row_node[in->row_start[d->link_node[k] + 1]++] = e;
+        for (k = in.node_start[e] = (uint32_t)d->link_start[e]; k < d->link_start[e + 1]; ++k) {
+            in.node_row[k] = (uint32_t)d->link_node[k];
+            in.row_node[in.row_start[d->link_node[k] + 1]++] = e;
         }
-    in->node_start[d->elements] = (uint32_t)links;
-    return true;
+    in.node_start[d->elements] = (uint32_t)links;
+    return gproji_analyse_graph(s, &in, d->first);
 }
 
 /* Consecutive elements with local unknowns that are alike: `left` multipliers, m rows and `count` columns, the first
@@ -9877,8 +9604,8 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->link_value = (int64_t *)gproji_pool_take(pool, links, sizeof(int64_t));
     w->entry_start = (int64_t *)gproji_pool_take_zeroed(pool, nodes + 1, sizeof(int64_t));
     w->value_start = (int64_t *)gproji_pool_take(pool, nodes + 1, sizeof(int64_t));
-    w->entry = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
-    w->entry_at = (int32_t *)gproji_pool_take(pool, entries, sizeof(int32_t));
+    w->entry = gproji_take_ints(pool, entries);
+    w->entry_at = gproji_take_ints(pool, entries);
     w->front_start = (int64_t *)gproji_pool_take(pool, fronts + 1, sizeof(int64_t));
     w->coupling = (gproji_coupling *)gproji_pool_take_zeroed(pool, nodes + GPROJI_SCHUR_AHEAD, sizeof *w->coupling);
     w->front_entry = (int64_t *)gproji_pool_take(pool, fronts, sizeof(int64_t));
@@ -9890,9 +9617,7 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = gproji_take_aligned(pool, d->chunks * d->most);
-    return d->root_start && d->link_value && w->entry_start && w->value_start && w->entry && w->entry_at &&
-           w->front_start && w->coupling && w->front_entry && w->value && d->root && d->side && d->share && d->metric &&
-           d->turns && d->triangle && d->work;
+    return !pool->failed;
 }
 
 /* Places W: node by node, at each the multipliers in elimination order. Work: sequence, by nodes; at, by nodes and by
@@ -9957,15 +9682,23 @@ GPROJI_INTERNAL bool gproji_schur_place_row(gproj_system *s, gproji_row_name nam
     return auxiliary;
 }
 
-/* Places the locals in all rows (see the section's invariant), and notes nodes that turn local unknowns. at: work, by
-   nodes. */
-GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
+/* Step 4, for multipliers: places W, and the locals in all rows (see the section's invariant). */
+GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
     const gproji_schur *d = &s->schur;
+    int32_t *at, *sequence, e;
     int64_t k, l;
-    int32_t e;
-    memset(at, 0, (size_t)s->nodes.count * sizeof *at);
-    for (k = d->own_start[0]; k < d->own_start[s->nodes.count]; ++k) gproji_schur_place_row(s, d->row[k], at);
-    for (e = 0; e < d->elements; ++e) {
+    gproji_pool pool;
+    bool done;
+    gproji_pool_start(&pool, &s->own);
+    at = gproji_take_ints(&pool, gproji_max(s->variable_count, d->first[d->elements]));
+    sequence = gproji_take_ints(&pool, s->nodes.count);
+    done = gproji_schur_take(s) && !s->taken.failed && !pool.failed;
+    if (done) {
+        gproji_schur_place_matrix(s, sequence, at);
+        memset(at, 0, (size_t)s->nodes.count * sizeof *at);
+        for (k = d->own_start[0]; k < d->own_start[s->nodes.count]; ++k) gproji_schur_place_row(s, d->row[k], at);
+    }
+    for (e = 0; done && e < d->elements; ++e) {
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             at[d->link_node[l]] = (int32_t)(l - d->link_start[e] + 1) * GPROJI_BLOCK_MAX;
         for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
@@ -9975,27 +9708,8 @@ GPROJI_INTERNAL void gproji_schur_place_locals(gproj_system *s, int32_t *at) {
             for (l = row->local; l < row[1].local; ++l) d->turns[s->nodes.of[g->local.variable[l]]] = 1;
         }
     }
-}
-
-/* Steps 3 and 4, for multipliers. */
-GPROJI_INTERNAL gproj_code gproji_schur_compile(gproj_system *s) {
-    gproj_code code = GPROJ_ERROR_MEMORY;
-    gproji_incidence in;
-    size_t most = (size_t)gproji_max(s->variable_count, s->schur.first[s->schur.elements]);
-    int32_t *at = (int32_t *)gproji_take(&s->own, most, sizeof *at);
-    int32_t *sequence = (int32_t *)gproji_take(&s->own, (size_t)s->nodes.count, sizeof *sequence);
-    memset(&in, 0, sizeof in);
-    if (at && sequence && gproji_take_local_places(s) && gproji_schur_incidence(s, &in))
-        code = gproji_analyse_graph(s, &in, s->schur.first);
-    if (code == GPROJ_OK && !gproji_schur_take(s)) code = GPROJ_ERROR_MEMORY;
-    if (code == GPROJ_OK) {
-        gproji_schur_place_matrix(s, sequence, at);
-        gproji_schur_place_locals(s, at);
-    }
-    gproji_incidence_give(&s->own, &in);
-    gproji_give(&s->own, at, most, sizeof *at);
-    gproji_give(&s->own, sequence, (size_t)s->nodes.count, sizeof *sequence);
-    return code;
+    gproji_pool_give_all(&pool);
+    return done;
 }
 
 /* Lets idle groups that have got a weight count; returns whether there were any. */
@@ -10015,6 +9729,7 @@ GPROJI_INTERNAL bool gproji_wake_groups(gproj_system *s) {
 /* Compiles the rows but for step 5, unless that is done. False: it failed, see gproji_fail_compile. */
 GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     gproj_code code = GPROJ_ERROR_MEMORY;
+    int32_t i;
     if (s->compiled && (whole ? s->schur.on : s->schur.stale || (s->schur.on && gproji_wake_groups(s))))
         gproji_system_forget(s);
     if (s->compiled) return true;
@@ -10023,7 +9738,11 @@ GPROJI_INTERNAL bool gproji_compile_rows(gproj_system *s, bool whole) {
     if (gproji_compile_variables(s) && gproji_schur_decide(s)) {
         s->schur.stale = s->schur.on && whole;
         if (s->schur.stale) gproji_schur_forget(s);
-        code = s->schur.on ? gproji_schur_compile(s) : gproji_compile_whole(s); /* steps 3 and 4 */
+        code = s->schur.on ? gproji_analyse_elements(s) : gproji_analyse_whole(s);
+        for (i = 0; code == GPROJ_OK && i < s->group_count; ++i)
+            s->group[i].local.at = gproji_take_ints(&s->taken, (int64_t)gproji_local_count(&s->group[i]));
+        if (code == GPROJ_OK && !(s->schur.on ? gproji_place_elements(s) : gproji_compile_places(s)))
+            code = GPROJ_ERROR_MEMORY;
     }
     s->cholesky->batch = gproji_min(s->wide_count + 1, GPROJI_SOLVE_BATCH);
     s->compiled = code == GPROJ_OK;
@@ -10056,29 +9775,6 @@ GPROJI_INLINED void gproji_whiten(int32_t size, const double *root, double *x) {
         double sum = 0;
         for (k = 0; k <= i; ++k) sum += root[i * size + k] * x[k];
         x[i] = sum;
-    }
-}
-
-/* x = K'x */
-GPROJI_INLINED void gproji_unwhiten(int32_t size, const double *root, double *x) {
-    int32_t i, k;
-    for (i = 0; i < size; ++i) {
-        double sum = 0;
-        for (k = i; k < size; ++k) sum += root[k * size + i] * x[k];
-        x[i] = sum;
-    }
-}
-
-/* Inverts a lower triangle with `size` rows. */
-GPROJI_INTERNAL void gproji_invert_triangle(double *root, int32_t size) {
-    int32_t i, j, k;
-    for (j = 0; j < size; ++j) {
-        root[j * size + j] = 1 / root[j * size + j];
-        for (i = j + 1; i < size; ++i) {
-            double sum = 0;
-            for (k = j; k < i; ++k) sum += root[i * size + k] * root[k * size + j];
-            root[i * size + j] = -sum / root[i * size + i];
-        }
     }
 }
 
@@ -10383,25 +10079,6 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
     }
 }
 
-/* Adds a node's own rows to D and b: w^2 g g' and - w^2 phi g. */
-GPROJI_INTERNAL void gproji_schur_own(const gproj_system *s, int32_t v, int32_t size, double *root, double *b) {
-    const gproji_schur *d = &s->schur;
-    int64_t k;
-    int32_t i, j;
-    for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
-        const gproji_group *g = &s->group[d->row[k].group];
-        const gproji_row *row = &g->row[d->row[k].row];
-        const double *gradient = g->local.gradient + row->local;
-        const int32_t *at = g->local.at + row->local;
-        int32_t count = (int32_t)(row[1].local - row->local);
-        double w = gproji_acting_weight(g, row), w2 = w * w;
-        for (i = 0; i < count && w > 0; ++i) {
-            b[at[i]] -= w2 * row->phi * gradient[i];
-            for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
-        }
-    }
-}
-
 /* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
 GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
     const gproji_schur *d = &s->schur;
@@ -10410,7 +10087,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     bool plain = d->own_start[v] == d->own_start[v + 1];
     double share = 1, corner;
     int64_t k;
-    int32_t i, j;
+    int32_t i, j, p;
     for (k = d->w.entry_start[v]; d->turns[v] && k < d->w.entry_start[v + 1]; ++k) share += d->share[d->w.entry[k]];
     d->metric[v] = share;
     corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
@@ -10424,10 +10101,30 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
             for (i = 0; i < size; ++i) gproji_wide_side(s, j)[s->nodes.first[v] + i] *= corner;
         return;
     }
-    /* D = L L', K = L^-1; then b, the rows in W and U are multiplied by it. */
-    gproji_schur_own(s, v, size, root, b);
+    /* 1. Adds its rows to D and b: w^2 g g' and - w^2 phi g. */
+    for (k = d->own_start[v]; k < d->own_start[v + 1]; ++k) {
+        const gproji_group *g = &s->group[d->row[k].group];
+        const gproji_row *row = &g->row[d->row[k].row];
+        const double *gradient = g->local.gradient + row->local;
+        const int32_t *at = g->local.at + row->local;
+        int32_t count = (int32_t)(row[1].local - row->local);
+        double weight = gproji_acting_weight(g, row), w2 = weight * weight;
+        for (i = 0; i < count && weight > 0; ++i) {
+            b[at[i]] -= w2 * row->phi * gradient[i];
+            for (j = 0; j < count; ++j) root[at[i] * size + at[j]] += w2 * gradient[i] * gradient[j];
+        }
+    }
+    /* 2. D = L L', K = L^-1. */
     gproji_small_factor(root, size, size, DBL_MIN);
-    gproji_invert_triangle(root, size);
+    for (j = 0; j < size; ++j) {
+        root[j * size + j] = 1 / root[j * size + j];
+        for (i = j + 1; i < size; ++i) {
+            double sum = 0;
+            for (p = j; p < i; ++p) sum += root[i * size + p] * root[p * size + j];
+            root[i * size + j] = -sum / root[i * size + i];
+        }
+    }
+    /* 3. Multiplies b, and the rows in W and U, by it. */
     gproji_whiten(size, root, b);
     for (k = d->w.entry_start[v]; k < d->w.entry_start[v + 1]; ++k, w += size) gproji_whiten(size, root, w);
     for (j = 0; j < s->wide.acting; ++j) gproji_whiten(size, root, gproji_wide_side(s, j) + s->nodes.first[v]);
@@ -10544,8 +10241,12 @@ GPROJI_INTERNAL void gproji_schur_load_front(void *user, int32_t front, const gp
     const gproji_coupling *end = d->w.coupling + d->w.front_start[front + 1];
     const int32_t *at = d->w.entry_at + d->w.front_entry[front];
     double *table[GPROJI_SCHUR_TABLE], **column = to <= GPROJI_SCHUR_TABLE ? table : NULL;
-    int32_t j;
-    if (column) gproji_panel_columns(panel, to, column);
+    int32_t j, i;
+    for (j = 0; column && j < to; j += GPROJI_BLOCK) { /* the table: columns of a block are a stride apart */
+        double *first = gproji_panel_column(panel, j);
+        ptrdiff_t stride = gproji_column_stride(panel, j);
+        for (i = 0; i < GPROJI_BLOCK; ++i, first += stride) column[j + i] = first;
+    }
     for (; node < end; at += node++->count) {
         const double *w = d->w.value + node->value, *later = d->w.value + node[GPROJI_SCHUR_AHEAD].value;
         GPROJI_PREFETCH(later);
@@ -10587,13 +10288,18 @@ GPROJI_INLINED void gproji_schur_move_node(gproj_system *s, int32_t v, int32_t s
     const gproji_schur *d = &s->schur;
     const double *w = d->w.value + d->w.value_start[v];
     double *u = s->vector.step + s->nodes.first[v];
+    const double *root = d->root + d->root_start[v]; /* K, a lower triangle by rows */
     int64_t i;
     int32_t k, p;
     for (i = d->w.entry_start[v]; i < d->w.entry_start[v + 1]; ++i, w += size)
         for (p = 0; p < size; ++p) u[p] -= w[p] * d->side[d->w.entry[i]];
     for (k = 0; k < s->wide.acting; ++k)
         for (p = 0; p < size; ++p) u[p] -= s->wide.vector[k] * gproji_wide_side(s, k)[s->nodes.first[v] + p];
-    gproji_unwhiten(size, d->root + d->root_start[v], u);
+    for (p = 0; p < size; ++p) {
+        double sum = 0;
+        for (k = p; k < size; ++k) sum += root[k * size + p] * u[k];
+        u[p] = sum;
+    }
 }
 
 /* Moves one chunk of nodes. */
@@ -11175,7 +10881,7 @@ typedef struct gproji_course {
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
-    m->hinge = s->hinges.list;
+    m->hinge = s->vector.hinges;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
@@ -11196,7 +10902,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
                 m->c[3] += w2 * 2 * h * q;
                 m->c[4] += w2 * q * q;
             } else if (!(phi + 2 * gproji_fmin(h, 0) + 4 * gproji_fmin(q, 0) >= 0)) { /* a t <= 2 may violate it */
-                gproji_hinge *hinge = &s->hinges.list[m->count++];
+                gproji_hinge *hinge = &s->vector.hinges[m->count++];
                 hinge->w2 = w2, hinge->phi = phi, hinge->h = h, hinge->q = q;
             }
         }
@@ -11914,13 +11620,13 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
 GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
     bool done;
     int32_t i;
-    if (!s->vector.sum)
-        s->vector.sum = (double *)gproji_take(&s->own, (size_t)s->variable_count, sizeof *s->vector.sum);
+    if (!s->vector.sum) s->vector.sum = (double *)gproji_pool_take(&s->taken, s->variable_count, sizeof *s->vector.sum);
     done = s->vector.sum != NULL;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         size_t rows = (size_t)g->row_count;
-        if (!g->multiplier) g->multiplier = (gproji_multiplier *)gproji_take(&s->own, rows, sizeof *g->multiplier);
+        if (!g->multiplier)
+            g->multiplier = (gproji_multiplier *)gproji_pool_take(&s->taken, g->row_count, sizeof *g->multiplier);
         done = done && g->multiplier;
         if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
     }
@@ -13156,7 +12862,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_c
 }
 
 GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *object = (gproji_mesh_object *)gproji_begin_object(host, sizeof(gproji_mesh_object), error);
+    gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object), error);
     if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
 }
@@ -14436,7 +14142,7 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
 /* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
                                                     const gproj_host *host) {
-    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object);
+    gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
     gproj_stencil *stencil;
     if (!object) return NULL;
     stencil = &object->stencil;
@@ -15211,7 +14917,7 @@ GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
 
 /* Creates a curve with room for points, which the caller fills in before gproji_curve_finish. NULL without memory. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gproj_host *host, gproj_error *error) {
-    gproj_curve *curve = (gproj_curve *)gproji_begin_object(host, sizeof(gproj_curve), error);
+    gproj_curve *curve = (gproj_curve *)gproji_create_object(host, sizeof(gproj_curve), error);
     if (!curve) return NULL;
     gproji_pool_start(&curve->pool, &curve->heap);
     curve->segment_count = segment_count;
@@ -15581,7 +15287,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
     if (!mesh->face_count || gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
-    surface = (gproj_surface *)gproji_begin_object(host, sizeof(gproj_surface), error);
+    surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface), error);
     if (!surface) return NULL;
     keep = &surface->pool;
     gproji_pool_start(keep, &surface->heap);
@@ -16116,7 +15822,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     size_t vertices, halfedges, faces;
     int32_t polylines, i;
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
-    object = (gproji_edit_object *)gproji_begin_object(host, sizeof *object, error);
+    object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
     s = &object->now;
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
@@ -19312,7 +19018,7 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
 static const double gproji_least_edge = 1e-305;
 
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
-    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
+    gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form), NULL);
     int32_t i, k, first, ring = 1;
     double edge;
     if (!form) return NULL;
@@ -24678,7 +24384,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     gproj_code code;
     gproji_error_clear(error);
     if (gproji_check_drag(form, handles, options, error) != GPROJ_OK) return NULL;
-    drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag);
+    drag = (gproj_drag *)gproji_create_object(&form->host, sizeof *drag, NULL);
     if (!drag) {
         gproji_fail_memory(error);
         return NULL;

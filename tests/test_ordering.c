@@ -413,13 +413,13 @@ static void check_parts(const gproji_nd *nd, int32_t *part_of) {
     }
 }
 
-/* A dissection with its memory, which end_dissection gives back. */
+/* Begins a dissection, whose memory end_dissection gives back. */
 static bool begin_dissection(gproji_nd *nd, gproji_pool *pool, gproji_heap *heap, const graph *g) {
     *heap = gproji_heap_of(NULL);
     memset(nd, 0, sizeof *nd);
     nd->heap = heap, nd->graph = &g->view;
     gproji_pool_start(pool, heap);
-    return gproji_nd_take(nd, pool);
+    return gproji_nd_begin(nd, pool, g->total);
 }
 
 static void end_dissection(gproji_nd *nd, gproji_pool *pool, gproji_heap *heap) {
@@ -438,7 +438,6 @@ GPROJT_TEST(dissection_separates) {
         gproji_pool pool;
         gproji_nd nd;
         GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
-        gproji_nd_begin(&nd, g.total);
         while (nd.parts > 0) {
             int32_t before = nd.parts;
             check_parts(&nd, part_of);
@@ -657,7 +656,6 @@ GPROJT_TEST(dissection_weighs_and_separates) {
         gproji_pool pool;
         gproji_nd nd;
         GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
-        gproji_nd_begin(&nd, g.total);
         while (nd.parts > 0) {
             const gproji_nd_part part = nd.stack[nd.parts - 1];
             gproji_nd_cut cut = {HUGE_VAL, 0, 0, 0, 0, 0, NULL, NULL};
