@@ -95,8 +95,9 @@ int main(void) {
     if (count < 140) printf("only %u functions were found\\n", count);
 }""")
 END
+library=$(existing build/library.san.a) # compiled once for all tests
 if have python3 && have gcc && python3 "$work/nothing.py" "$header" >"$work/nothing.c" &&
-    gcc -w -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$root" "$work/nothing.c" -o "$work/nothing" -lm; then
+    ${CC:-gcc} -w -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all -I"$root" ${library:+-DGPROJI_IMPLEMENTED} "$work/nothing.c" $library -pthread -o "$work/nothing" -lm; then
     clean 'functions that crash where nothing is given' "$("$work/nothing" 2>/dev/null)"
 else
     skip 'nothing given: no python3, or no gcc with sanitizers'

@@ -474,7 +474,9 @@ def write_header(source, mutants):
     text = text.replace("#define GPROJI_IMPLEMENTED\n", '#define GPROJI_IMPLEMENTED //\n#include "mutants.h"\n#line %d\n' % (
         source.count("\n", 0, source.index("#define GPROJI_IMPLEMENTED")) + 2), 1)
     with open(os.path.join(TREE, "guidedproj.h"), "w") as f: f.write(text)
-    with open(os.path.join(TREE, "mutants.h"), "w") as f: f.write(PRELUDE % dict(size=len(mutants) + 1))
+    for folder in TREE, os.path.join(TREE, "tests/build"):  # beside each copy of the header
+        os.makedirs(folder, exist_ok=True)
+        with open(os.path.join(folder, "mutants.h"), "w") as f: f.write(PRELUDE % dict(size=len(mutants) + 1))
 
 
 def make_tree():

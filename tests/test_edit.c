@@ -443,6 +443,47 @@ GPROJT_TEST(splits_and_cuts) {
     gproj_edit_destroy(e);
 }
 
+/* Faces begin at the same corner after any of their edges is split, alone or by a strip that cuts them. */
+GPROJT_TEST(first_corners_stay) {
+    gproj_mesh *mesh = gprojt_lined_grid();
+    int32_t edge, strip, f, first[6];
+    for (edge = 0; edge < mesh->edge_count; ++edge)
+        for (strip = 0; strip < 2; ++strip) {
+            gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
+            for (f = 0; f < 6; ++f) first[f] = e->origin[e->face_halfedge[f]];
+            if (strip) GPROJT_CHECK(gproj_edit_insert_strip(e, edge, 0.5, NULL) >= 0);
+            else GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14);
+            for (f = 0; f < 6; ++f) GPROJT_CHECK(e->origin[e->face_halfedge[f]] == first[f]);
+            gproj_edit_destroy(e);
+        }
+    gproj_mesh_destroy(mesh);
+}
+
+/* Polylines get a vertex for each time that they run along an edge that is split, again and again, and go on along edges. */
+GPROJT_TEST(polylines_grow) {
+    int32_t strips, i, k;
+    for (strips = 0; strips < 2; ++strips) {
+        gproj_mesh *mesh = gprojt_lined_grid(), *after;
+        gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
+        int32_t edge = gproj_edit_edge(e, 5, 6);
+        for (i = 0; i < 40; ++i) {
+            if (strips) edge = gproj_edit_insert_strip(e, edge, 0.5, NULL);
+            else GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14 + i);
+        }
+        after = gprojt_edit_mesh(e);
+        GPROJT_REQUIRE(after != NULL);
+        GPROJT_CHECK(after->polyline_count == 3 && after->vertex_count == 14 + 40 * (strips ? 3 : 1));
+        GPROJT_CHECK(after->polyline_start[1] == 4 + 40); /* the ring has two of the strip's rungs */
+        GPROJT_CHECK(after->polyline_start[2] - after->polyline_start[1] == 5 + 40 * (1 + strips));
+        for (k = 0; k < 2; ++k)
+            for (i = after->polyline_start[k]; i + 1 < after->polyline_start[k + 1]; ++i)
+                GPROJT_CHECK(gproj_edit_edge(e, after->polyline_vertex[i], after->polyline_vertex[i + 1]) >= 0);
+        gproj_mesh_destroy(after);
+        gproj_mesh_destroy(mesh);
+        gproj_edit_destroy(e);
+    }
+}
+
 GPROJT_TEST(collapses_carry_numbers_on) {
     gproj_mesh *mesh = gprojt_lined_grid(), *after;
     gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
@@ -1163,6 +1204,8 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(ten_thousand_of_each);
     GPROJT_RUN(splits_and_cuts);
+    GPROJT_RUN(first_corners_stay);
+    GPROJT_RUN(polylines_grow);
     GPROJT_RUN(collapses_carry_numbers_on);
     GPROJT_RUN(split_and_collapse_is_nothing);
     GPROJT_RUN(each_edge_by_itself);

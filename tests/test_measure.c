@@ -291,6 +291,30 @@ GPROJT_TEST(bow_ties) {
     }
 }
 
+/* Faces that all have no area, or none at all, spread by nothing. */
+GPROJT_TEST(no_area_has_no_spread) {
+    static const char *const text[2] = {"v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n", "v 0 0 0\nv 1 0 0\n"};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gproj_mesh_read(text[i], strlen(text[i]), GPROJ_FORMAT_OBJ, NULL, NULL);
+        gproj_measures m = gproj_measure(mesh, NULL, NULL);
+        GPROJT_CHECK(m.area == 0 && m.area_spread == 0 && m.degenerate_faces == 1 - i);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Sides that a corner touches from inside do not cross, whichever side is the first. */
+GPROJT_TEST(sides_that_touch) {
+    static const double touched[10] = {0, 0, 4, 0, 4, 2, 2, 0, 0, 2};
+    double turned[10], tilt;
+    int32_t first, i;
+    for (first = 0; first < 5; ++first)
+        for (tilt = 0; tilt < 3; tilt += 0.7) {
+            for (i = 0; i < 10; ++i) turned[i] = touched[(2 * first + i) % 10];
+            GPROJT_CHECK(gprojt_bow_ties(5, turned, tilt) == 0);
+        }
+}
+
 /* Its two halves have areas of opposite sign and there is no vectorial area to look along. */
 GPROJT_TEST(bow_ties_without_area) {
     static const double tie[8] = {0, 0, 1, 0, 0, 1, 1, 1};
@@ -697,6 +721,8 @@ int main(void) {
     GPROJT_RUN(areas_and_edges);
     GPROJT_RUN(folded_edges);
     GPROJT_RUN(bow_ties);
+    GPROJT_RUN(no_area_has_no_spread);
+    GPROJT_RUN(sides_that_touch);
     GPROJT_RUN(bow_ties_without_area);
     GPROJT_RUN(bow_ties_with_many_corners);
     GPROJT_RUN(faces_with_very_many_corners);

@@ -251,6 +251,16 @@ GPROJT_TEST(ends_are_compared) {
         for (j = 0; j < 6; ++j) GPROJT_CHECK(gprojt_inside_ends_better(&end[i], &end[j]) == (i < j));
 }
 
+#ifdef GPROJT_SANITIZED
+enum {
+    GPROJT_SAVED_AFTER = 5 /* sanitizers see nothing new in those between */
+};
+#else
+enum {
+    GPROJT_SAVED_AFTER = 1
+};
+#endif
+
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
    and in a new one. */
 GPROJT_TEST(frames_and_states) {
@@ -258,7 +268,7 @@ GPROJT_TEST(frames_and_states) {
     int32_t at, most = 1;
     int kind;
     for (kind = 0; kind < 3; ++kind)
-        for (at = 0, most = 1; at < most; ++at) {
+        for (at = 0, most = 1; at < most; at += GPROJT_SAVED_AFTER) {
             gproj_mesh *mesh[2] = {gprojt_twisted(7, 0.15), gprojt_twisted(7, 0.15)};
             gproj_form *form[2];
             gproj_result result;
