@@ -19170,10 +19170,12 @@ typedef struct gproji_form_work {
     double *area;      /* the vectorial area of each face */
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
+    gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for its centre */
 } gproji_form_work;
 
 struct gproj_form {
     gproji_heap own;
+    gproji_pool pool; /* has the arrays below, but those of `unknowns` */
     gproj_error error;
     gproj_host host;
     gproj_mesh *mesh;
@@ -19201,12 +19203,9 @@ struct gproj_form {
 
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_heap *own;
-    size_t vertices, faces;
     int32_t i;
     if (!form) return;
     own = &form->own;
-    vertices = form->mesh ? (size_t)form->mesh->vertex_count : 0;
-    faces = form->mesh ? (size_t)form->mesh->face_count : 0;
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
     gproji_give(own, form->statics, 1, sizeof *form->statics);
     while (form->part) {
@@ -19219,13 +19218,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     for (i = 0; i < form->unknowns.count; ++i)
         gproji_give(own, form->unknowns.block[i].value, (size_t)form->unknowns.block[i].count, sizeof(double));
     gproji_give(own, form->unknowns.block, form->unknowns.capacity, sizeof *form->unknowns.block);
-    gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
-    gproji_give(own, form->before, 3 * vertices, sizeof *form->before);
-    gproji_give(own, form->normal, faces, sizeof *form->normal);
-    gproji_give(own, form->axis, faces, sizeof *form->axis);
-    gproji_give(own, form->cone, vertices, sizeof *form->cone);
-    gproji_give(own, form->work.area, 3 * faces, sizeof *form->work.area);
-    gproji_give(own, form->work.ring, (size_t)form->work.ring_size, sizeof *form->work.ring);
+    gproji_pool_give_all(&form->pool);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
 }
@@ -19250,9 +19243,9 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
         for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
         if (k == 3) continue;
-        gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                    "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
-        return false;
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                           "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with",
+                           i) == GPROJ_OK;
     }
     return true;
 }
@@ -19262,9 +19255,13 @@ static const double gproji_least_edge = 1e-305;
 
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
     gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form));
+    gproji_pool *pool;
+    int64_t vertices, faces;
     int32_t i, k, first, ring = 1;
     double edge;
     if (!form) return NULL;
+    pool = &form->pool;
+    gproji_pool_start(pool, &form->own);
     gproji_error_clear(&form->error);
     if (host) form->host = *host;
     form->mesh = mesh;
@@ -19278,15 +19275,16 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     /* 1. Arrays, and the system. */
     for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
     for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
+    vertices = mesh->vertex_count, faces = mesh->face_count;
     form->work.ring_size = ring;
-    form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
-    form->before = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->before);
-    form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
-    form->work.area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->work.area);
-    form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
+    form->original = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->original);
+    form->before = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->before);
+    form->normal = gproji_take_ints(pool, faces);
+    form->work.area = (double *)gproji_pool_take(pool, faces, 3 * sizeof *form->work.area);
+    form->work.ring = gproji_take_ints(pool, ring);
+    form->work.term = (gproj_term *)gproji_pool_take(pool, (int64_t)ring + 1, 3 * sizeof *form->work.term);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
-        gproji_fail_memory(&form->error);
+    if (pool->failed || !form->system) gproji_fail_memory(&form->error);
     if (form->error.code || !gproji_positions_are_finite(form, &form->error)) return form;
     /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
        the digits of all coordinates. */
@@ -19310,7 +19308,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (!gproji_positions_are_finite(form, &form->error)) return form;
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
-    for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
+    gproji_fill(form->normal, mesh->face_count, -1);
     gproj_system_add_variables(form->system, 3 * mesh->vertex_count, 3, form->original);
     return form;
 }
@@ -19409,6 +19407,15 @@ GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const gproji_rule *ru
     return gproji_add_group(gproji_new_part(form, rule, 0), weight);
 }
 
+/* Adds a part with its group, as yet without entries, of which there may be `capacity`; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_open_part(gproj_form *form, const gproji_rule *rule, int32_t capacity,
+                                              double weight) {
+    gproji_part *part = gproji_new_part(form, rule, capacity);
+    if (gproji_add_group(part, weight) < 0) return NULL;
+    part->count = 0;
+    return part;
+}
+
 /* What a builder returns: the group, or -1 after an error. */
 GPROJI_INTERNAL int32_t gproji_built(const gproj_form *form, int32_t group) {
     return gproji_form_ready(form) ? group : -1;
@@ -19457,10 +19464,22 @@ GPROJI_INTERNAL bool gproji_rule_is_on(const gproj_form *form, const gproji_rule
     return false;
 }
 
+/* What a builder returns after an error: -1. */
+GPROJI_INLINE int32_t gproji_none(gproj_code code) {
+    (void)code;
+    return -1;
+}
+
 GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
     term->i = i;
     term->j = j;
     term->a = a;
+}
+
+/* Sets the terms of a linear row in a point, whose coordinates are the variables from `first` on. */
+GPROJI_INLINE void gproji_set_point(gproj_term *term, int32_t first) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + k, -1, 0);
 }
 
 /* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
@@ -19486,19 +19505,14 @@ GPROJI_INTERNAL bool gproji_take_list(gproj_form *form, const char *name, gproj_
                                       const int32_t *elements) {
     int32_t have = gproji_element_count(form->mesh, place), i;
     if (!elements && *count == 0) *count = have;
-    if (*count < 0 || (!elements && *count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the count is %d, not 0 to %d", name,
-                    *count, have);
-        return false;
-    }
-    for (i = 0; elements && i < *count; ++i) {
-        if (elements[i] >= 0 && elements[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
-                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
-                    elements[i], have);
-        return false;
-    }
-    return true;
+    if (*count < 0 || (!elements && *count > have))
+        gproji_refuse(&form->error, "%s: the count is %d, not 0 to %d", name, *count, have);
+    for (i = 0; elements && i < *count && form->error.code == GPROJ_OK; ++i)
+        if (elements[i] < 0 || elements[i] >= have)
+            gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
+                        "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
+                        elements[i], have);
+    return form->error.code == GPROJ_OK;
 }
 
 /* Copies the caller's list to a new part; NULL after an error. */
@@ -19611,10 +19625,8 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_targets_rule, count, vertices);
-    if (part && part->count > 0 && !positions) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
-        return -1;
-    }
+    if (part && part->count > 0 && !positions)
+        return gproji_none(gproji_refuse(&form->error, "targets: there are no positions"));
     if (part && gproji_check_positions(part->count, positions, "target", &form->error)) return -1;
     return gproji_add_points(part, positions, weight);
 }
@@ -19719,7 +19731,6 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], *local, n, c, k;
     double normal[3];
-    if (part->group < 0) return;
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
@@ -19752,10 +19763,8 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
         return gproji_form_ready(form) ? form->planarity : -1;
     }
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_planarity_rule, mesh->face_count);
+    part = gproji_open_part(form, &gproji_planarity_rule, mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f)
         if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
@@ -19908,12 +19917,12 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
 GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight) {
     static const double axis[3] = {1, 0, 0};
     gproj_form *form = part->form;
-    int32_t i, k, c;
+    int32_t i, k;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
         gproji_gliding_of(part)->segment[i] = -1;
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        gproji_set_point(term, 3 * part->vertex[i]);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->vertex[i],
@@ -19927,10 +19936,7 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
     gproji_part *part = gproji_new_list_part(form, &gproji_gliding_rule, count, vertices);
     gproji_gliding *gliding = gproji_take_gliding(part);
     if (!gliding) return -1;
-    if (!curve) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "gliding: there is no curve");
-        return -1;
-    }
+    if (!curve) return gproji_none(gproji_refuse(&form->error, "gliding: there is no curve"));
     gliding->curve = curve;
     return gproji_add_gliding_rows(part, weight);
 }
@@ -20001,18 +20007,15 @@ static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,  
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
     gproji_part *part = gproji_new_selected_part(form, &gproji_reference_rule, gproji_select_all);
     const gproj_surface **kept = (const gproj_surface **)gproji_part_take(part, 1, sizeof *kept);
-    int32_t i, c;
+    int32_t i;
     if (!kept) return -1;
-    if (!surface) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "reference: there is no surface");
-        return -1;
-    }
+    if (!surface) return gproji_none(gproji_refuse(&form->error, "reference: there is no surface"));
     *kept = surface;
     part->data = kept;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        gproji_set_point(term, 3 * part->vertex[i]);
         gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
     }
     return gproji_built(form, part->group);
@@ -20029,14 +20032,13 @@ typedef struct gproji_difference {
 } gproji_difference;
 
 /* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
-   the element, so that a refresh can fill in their coefficients. `term`: room for 3 (count + 1). */
+   the element, so that a refresh can fill in their coefficients. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
-                                           const gproji_difference *d, gproj_term *term) {
+                                           const gproji_difference *d) {
     int32_t points = d->count + 1, last, k, i, *local;
+    gproj_term *term = form->work.term;
     if (tangential) {
-        for (i = 0; i < points; ++i)
-            for (k = 0; k < 3; ++k)
-                gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
+        for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
         for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
         tangential->vertex[tangential->count++] = d->element;
         return;
@@ -20055,7 +20057,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
 /* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
    four, else the mean of all (paper 3.2). */
 GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
-                                                 int32_t centre, int32_t count, int32_t element, gproj_term *term) {
+                                                 int32_t centre, int32_t count, int32_t element) {
     const int32_t *ring = form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
@@ -20064,21 +20066,10 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
         pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        gproji_add_difference(form, group, tangential, &d, term);
+        gproji_add_difference(form, group, tangential, &d);
         d.neighbour = pairs + 2;
     }
-    gproji_add_difference(form, group, tangential, &d, term);
-}
-
-/* Room for the largest difference, or face, in this mesh. */
-GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
-    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
-    if (!term) gproji_fail_memory(&form->error);
-    return term;
-}
-
-GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
-    gproji_give(&form->own, term, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
+    gproji_add_difference(form, group, tangential, &d);
 }
 
 /* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
@@ -20092,7 +20083,7 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
 }
 
 /* Adds the differences along the boundary, except at corners. */
-GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group, gproj_term *term) {
+GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group) {
     const gproj_mesh *mesh = form->mesh;
     int32_t v;
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -20103,7 +20094,7 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
         d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
-        gproji_add_difference(form, group, NULL, &d, term);
+        gproji_add_difference(form, group, NULL, &d);
     }
 }
 
@@ -20111,14 +20102,9 @@ static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", G
                                                           GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
 
 GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
-    gproj_term *term;
-    int32_t group;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_boundary_fairness_rule, weight);
-    term = gproji_take_terms(form);
-    if (!term) return -1;
-    gproji_add_boundary_differences(form, group, term);
-    gproji_give_terms(form, term);
+    int32_t group = gproji_new_group(form, &gproji_boundary_fairness_rule, weight);
+    if (group < 0) return -1;
+    gproji_add_boundary_differences(form, group);
     return gproji_built(form, group);
 }
 
@@ -20126,20 +20112,16 @@ static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,   
                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
 
 GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    gproj_term *term;
     int32_t group = gproji_new_group(form, rule, weight), v;
     size_t vertices;
     if (group < 0) return -1;
     vertices = (size_t)form->mesh->vertex_count;
     gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
-    term = gproji_take_terms(form);
-    if (!term) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v, term);
+        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
     }
-    gproji_add_boundary_differences(form, group, term);
-    gproji_give_terms(form, term);
+    gproji_add_boundary_differences(form, group);
     return gproji_built(form, group);
 }
 
@@ -20183,19 +20165,14 @@ static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
-    gproj_term *term;
     int32_t v;
     if (!gproji_form_ready(form)) return -1;
-    part = gproji_new_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count);
-    term = part ? gproji_take_terms(form) : NULL;
-    if (!term) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
+    part = gproji_open_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count, weight);
+    if (!part) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
+        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -20207,18 +20184,12 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         if (form->normal[f] >= 0) continue;
-        if (form->mesh->face_degree[f] > 3) {
-            gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
-                        "%s needs the normals of planar faces: call gproj_add_planarity before", rule->name);
-            return false;
-        }
-        if (!part) {
-            part = gproji_new_part(form, &gproji_triangle_normals_rule, form->mesh->face_count);
-            if (!part) return false;
-            part->count = 0;
-            gproji_add_group(part, 1);
-        }
-        gproji_add_normal(part, f);
+        if (form->mesh->face_degree[f] > 3)
+            return gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
+                               "%s needs the normals of planar faces: call gproj_add_planarity before",
+                               rule->name) == GPROJ_OK;
+        if (!part) part = gproji_open_part(form, &gproji_triangle_normals_rule, form->mesh->face_count, 1);
+        if (part) gproji_add_normal(part, f);
     }
     return gproji_form_ready(form);
 }
@@ -20229,15 +20200,11 @@ static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
     gproji_part *part;
-    gproj_term *term;
     int32_t f, k;
     if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, &gproji_gauss_rule)) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_gauss_rule, 2 * mesh->face_count);
-    term = part ? gproji_take_terms(form) : NULL;
-    if (!term) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
+    part = gproji_open_part(form, &gproji_gauss_rule, 2 * mesh->face_count, weight);
+    if (!part) return -1;
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
         for (k = 0; k < degree; ++k, h = mesh->next[h]) {
@@ -20245,7 +20212,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
             count += neighbour >= 0;
         }
-        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f, term);
+        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f);
         /* A quad at the boundary still has a difference if it has two opposite neighbours. */
         for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
             gproji_difference d;
@@ -20254,10 +20221,9 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
             d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
-            gproji_add_difference(form, part->group, part, &d, term);
+            gproji_add_difference(form, part->group, part, &d);
         }
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -20339,11 +20305,10 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
         int32_t edge = edges ? edges[k] : k;
         double length = lengths ? lengths[k] * form->scale : gproji_edge_length(form->mesh, form->original, edge);
         gproj_term term[9];
-        if (!(length > 0) || !gproji_is_finite(length)) {
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                        "lengths: edge %d would have the length %g, which is not > 0", edge, length / form->scale);
-            return -1;
-        }
+        if (!(length > 0) || !gproji_is_finite(length))
+            return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                                           "lengths: edge %d would have the length %g, which is not > 0", edge,
+                                           length / form->scale));
         gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
         gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
     }
@@ -20601,13 +20566,11 @@ GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[loop]);
         h = start; /* the half-edge that leaves a corner, if there is one */
-        if (planes == 2 && corners < 3) {
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
-                        "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
-                        "between them",
-                        mesh->origin[h], corners);
-            return -1;
-        }
+        if (planes == 2 && corners < 3)
+            return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
+                                           "straight boundary: the boundary through vertex %d has %d corners, and "
+                                           "needs 3 to be straight between them",
+                                           mesh->origin[h], corners));
         do {
             part->vertex[part->count++] = mesh->origin[h];
             h = mesh->next[h];
@@ -20642,11 +20605,8 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (normal) gproji_copy3(normal, n);
-    if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "orthogonal edges: the normal has no direction");
-        return -1;
-    }
+    if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n)))
+        return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal has no direction"));
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
     group = gproji_new_group(form, &gproji_orthogonal_edges_rule, weight);
@@ -20719,12 +20679,10 @@ GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t fac
 /* Makes a list for first variables, all -1, unless it is there; false without memory. */
 GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
     if (*list) return true;
-    *list = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof **list);
-    if (*list)
-        gproji_fill(*list, count, -1);
-    else
-        gproji_fail_memory(&form->error);
-    return *list != NULL;
+    *list = gproji_take_ints(&form->pool, count);
+    if (!*list) return gproji_fail_memory(&form->error) == GPROJ_OK;
+    gproji_fill(*list, count, -1);
+    return true;
 }
 
 GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
@@ -20767,10 +20725,8 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     int32_t f, k, c, h;
     if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_circularity_rule, mesh->face_count);
+    part = gproji_open_part(form, &gproji_circularity_rule, mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
         double start[3];
@@ -20860,10 +20816,8 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
-    part = gproji_new_part(form, &gproji_conicality_rule, rows);
+    part = gproji_open_part(form, &gproji_conicality_rule, rows, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     /* 2. Rows: a'a = 1, then one for each edge between two faces. */
     for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
         int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
@@ -20873,14 +20827,12 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         part->vertex[part->count++] = ~v;
         do {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
-            for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
-                gproji_set_term(&term[c], axis + c, -1, 0);
-                gproji_set_term(&term[3 + c], 3 * v + c, -1, 0);
-                gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
-                gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
-                gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
-            }
             if (face >= 0 && other >= 0) {
+                gproji_set_point(&term[0], axis);
+                gproji_set_point(&term[3], 3 * v);
+                gproji_set_point(&term[6], 3 * mesh->origin[h ^ 1]);
+                gproji_set_point(&term[9], form->normal[face]);
+                gproji_set_point(&term[12], form->normal[other]);
                 gproj_system_add_row(form->system, part->group, 15, term, 0, v);
                 part->vertex[part->count++] = h;
             }
@@ -20943,9 +20895,9 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
 
 /* The terms that gproji_linearise_area fills in; returns their number. */
 GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t face, gproj_term *term) {
-    int32_t h = mesh->face_halfedge[face], k, c;
+    int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[3 * k + c], 3 * mesh->origin[h] + c, -1, 0);
+        gproji_set_point(&term[3 * k], 3 * mesh->origin[h]);
     return 3 * mesh->face_degree[face];
 }
 
@@ -20980,9 +20932,10 @@ static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
     const int32_t *common = gproji_part_unknowns(part, 1);
-    gproj_term *term = common ? gproji_take_terms(form) : NULL;
+    gproj_term *term;
     int32_t f, count;
-    if (!term) return -1;
+    if (!common) return -1;
+    term = form->work.term;
     gproji_start_area(part);
     gproji_add_group(part, weight);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
@@ -20990,7 +20943,6 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
         gproji_set_term(&term[count], *common, -1, -1);
         gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -21016,10 +20968,7 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
     gproj_form *form = part->form;
     int32_t count = 3 * form->mesh->vertex_count, t;
     gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
-    if (!term) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
+    if (!term) return gproji_none(gproji_fail_memory(&form->error));
     gproji_add_group(part, weight);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
@@ -21052,10 +21001,9 @@ static const gproji_rule gproji_volume_rule = {"volume",        GPROJ_CONSTRAINT
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
     gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
     if (!part) return -1;
-    if (!gproji_is_finite(volume)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
-        return -1;
-    }
+    if (!gproji_is_finite(volume))
+        return gproji_none(
+            gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number"));
     part->given[0] = volume * form->scale * form->scale * form->scale;
     return gproji_add_global_rows(part, weight, 1);
 }
@@ -21065,9 +21013,9 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 /* Refuses bounds that are no numbers, or that no number satisfies. */
 GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name, double min, double max) {
     if (min <= max && (min <= 0 || gproji_is_finite(min)) && (max >= 0 || gproji_is_finite(max))) return true;
-    gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min, max);
-    return false;
+    return gproji_refuse(&form->error,
+                         "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min,
+                         max) == GPROJ_OK;
 }
 
 /* Takes bounds for something that is never negative: bound = at least and at most, times `scale`; 0 and infinite
@@ -21075,12 +21023,11 @@ GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name,
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
     if (!gproji_bounds_are_valid(form, name, min, max)) return false;
-    if ((min < 0 && gproji_is_finite(min)) || !(max > 0)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY for none",
-                    name, min, max);
-        return false;
-    }
+    if ((min < 0 && gproji_is_finite(min)) || !(max > 0))
+        return gproji_refuse(&form->error,
+                             "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY "
+                             "for none",
+                             name, min, max) == GPROJ_OK;
     bound[0] = min > 0 ? min * scale : 0;
     bound[1] = gproji_is_finite(max) ? max * scale : HUGE_VAL;
     return true;
@@ -21142,23 +21089,16 @@ static const gproji_rule gproji_area_bounds_rule = {"area bounds",   GPROJ_BOUND
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
     const char *name = gproji_area_bounds_rule.name;
-    gproji_part *part;
-    gproj_term *term;
-    int32_t k, side;
-    if (!gproji_form_ready(form)) return -1;
-    part = gproji_new_list_part(form, &gproji_area_bounds_rule, count, faces);
+    gproji_part *part = gproji_new_list_part(form, &gproji_area_bounds_rule, count, faces);
+    int32_t k, side, terms;
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->given)) return -1;
-    term = gproji_take_terms(form);
-    if (!term) return -1;
     gproji_add_group(part, weight);
     for (k = 0; k < part->count; ++k) {
-        for (side = 0; side < 2; ++side) {
-            int32_t terms = gproji_set_area_terms(form->mesh, part->vertex[k], term);
+        terms = gproji_set_area_terms(form->mesh, part->vertex[k], form->work.term);
+        for (side = 0; side < 2; ++side)
             if (gproji_has_bound(part->given, side))
-                gproj_system_add_row(form->system, part->group, terms, term, 0, part->vertex[k]);
-        }
+                gproj_system_add_row(form->system, part->group, terms, form->work.term, 0, part->vertex[k]);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -21248,15 +21188,11 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     gproji_total *total;
     int32_t rows;
     if (!part) return -1;
-    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, min);
-        return -1;
-    }
-    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: the prices %g and %g must be >= 0 and not both 0", rule->name, length_price, area_price);
-        return -1;
-    }
+    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min)))
+        return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0", rule->name, min));
+    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices))
+        return gproji_none(gproji_refuse(&form->error, "%s: the prices %g and %g must be >= 0 and not both 0",
+                                         rule->name, length_price, area_price));
     if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
     part->given[GPROJI_PRICE] = length_price / form->scale;
     part->given[GPROJI_PRICE + 1] = area_price / form->scale / form->scale;
@@ -21362,12 +21298,10 @@ GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind 
     gproji_part *part;
     gproji_own_rule *own;
     if (!gproji_form_ready(form)) return -1;
-    if (kind < GPROJ_CONSTRAINT || kind > GPROJ_BOUND || place < GPROJ_PLACE_NONE || place > GPROJ_PLACE_FACE) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "rows: kind %d must be a gproj_kind, and place %d none, vertex, edge or face", (int32_t)kind,
-                    (int32_t)place);
-        return -1;
-    }
+    if (kind < GPROJ_CONSTRAINT || kind > GPROJ_BOUND || place < GPROJ_PLACE_NONE || place > GPROJ_PLACE_FACE)
+        return gproji_none(gproji_refuse(&form->error,
+                                         "rows: kind %d must be a gproj_kind, and place %d none, vertex, edge or face",
+                                         (int32_t)kind, (int32_t)place));
     part = gproji_new_part(form, &gproji_rows_rule, 0);
     own = (gproji_own_rule *)gproji_part_take(part, 1, sizeof *own);
     if (!own) return -1;
@@ -21400,16 +21334,12 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
     gproji_unknowns *u;
     int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
     if (!part) return -1;
-    if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                    "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values", part->rule->name,
-                    count);
-        return -1;
-    }
-    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u)) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
+    if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values)
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                                       "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
+                                       part->rule->name, count));
+    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u))
+        return gproji_none(gproji_fail_memory(&form->error));
     form->unknowns.block = (gproji_unknowns *)block;
     u = &form->unknowns.block[form->unknowns.count];
     u->value = (double *)gproji_take(&form->own, (size_t)count, sizeof *u->value);
@@ -21459,17 +21389,13 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     int32_t t, row = -1, made = 0;
     size_t room = 3 * (size_t)gproji_max(count, 0);
     if (!part) return -1;
-    if (count < 0 || (count > 0 && !terms)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group, "%s: a row of %d terms, or no list",
-                    part->rule->name, count);
-        return -1;
-    }
-    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place)) {
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
-                    "%s: there is no %s %d, and -1 is none", part->rule->name, gproji_place_word(part->rule->place),
-                    element);
-        return -1;
-    }
+    if (count < 0 || (count > 0 && !terms))
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                                       "%s: a row of %d terms, or no list", part->rule->name, count));
+    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place))
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
+                                       "%s: there is no %s %d, and -1 is none", part->rule->name,
+                                       gproji_place_word(part->rule->place), element));
     inside = (gproj_term *)gproji_take(&form->own, room, sizeof *inside);
     if (!inside) gproji_fail_memory(&form->error);
     gproji_sum_add_product(&sum, form->scale, constant);
