@@ -12742,15 +12742,13 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
         for (k = 0; k < 3; ++k) {
             double x = position[3 * i + k];
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
-            if (!gproji_is_finite(x)) {
+            if (!gproji_is_finite(x))
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                                    "coordinate %s of %s %d is %g; give it a finite value", axis, noun, i, x);
-            }
-            if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX) {
+            if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX)
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                                    "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, noun,
                                    i, x);
-            }
         }
     }
     return GPROJ_OK;
@@ -12770,17 +12768,14 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
     int32_t *slot = work->slot, *mark = work->mark;
     /* 1. Sort the corners by the smaller vertex of their edge; equal ones keep their order. */
     gproji_fill(slot, soup->vertex_count + 1, 0);
-    for (c = 0; c < soup->corner_count; ++c) {
-        slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
-    }
+    for (c = 0; c < soup->corner_count; ++c) slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
     for (v = 0; v <= soup->vertex_count; ++v) {
         int32_t corners = slot[v];
         slot[v] = sum;
         sum += corners;
     }
-    for (c = 0; c < soup->corner_count; ++c) {
+    for (c = 0; c < soup->corner_count; ++c)
         work->corner_order[slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
-    }
     /* 2. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
        the loop passes smaller vertex a, which mark[b] = a says. */
     gproji_fill(mark, soup->vertex_count, -1);
@@ -12989,16 +12984,14 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
         work->face_start[f] = c;
         for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
             int32_t v = soup->face_vertex[c];
-            if (v < 0 || v >= soup->vertex_count) {
+            if (v < 0 || v >= soup->vertex_count)
                 return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, f,
                                    "face %d names vertex %d, but the vertices are 0 to %d", f, v,
                                    soup->vertex_count - 1);
-            }
-            if (work->mark[v] == f) {
+            if (work->mark[v] == f)
                 return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
                                    "face %d names vertex %d twice; name each corner once, or split the face there", f,
                                    v);
-            }
             work->mark[v] = f;
             work->corner_vertex[c] = v;
             work->corner_face[c] = f;
@@ -13041,16 +13034,14 @@ GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t face_count, const int32_
     int32_t f;
     *corners = 0;
     for (f = 0; f < face_count; ++f) {
-        if (face_degree[f] < 3) {
+        if (face_degree[f] < 3)
             return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
                                "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
-        }
         *corners += face_degree[f];
-        if (*corners > GPROJI_CORNERS_MAX) {
+        if (*corners > GPROJI_CORNERS_MAX)
             return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
                                "the faces up to face %d have more than %d corners; split the mesh", f,
                                (int32_t)GPROJI_CORNERS_MAX);
-        }
     }
     return GPROJ_OK;
 }
@@ -13061,11 +13052,10 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    if (soup->vertex_count > GPROJI_VERTICES_MAX) {
+    if (soup->vertex_count > GPROJI_VERTICES_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
-    }
     code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
     if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
@@ -13112,8 +13102,8 @@ GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
 
 GPROJI_INTERNAL gproj_code gproji_check_counts(int32_t vertex_count, int32_t face_count, gproj_error *error) {
     if (vertex_count >= 1 && face_count >= 0) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                       "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+    return gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
+                         face_count);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
@@ -13715,9 +13705,8 @@ GPROJI_INTERNAL bool gproji_next_word(gproji_reader *reader) {
             break;
         }
     }
-    if (reader->at >= reader->size || gproji_is_line_end(reader->text[reader->at]) || reader->text[reader->at] == '#') {
+    if (reader->at >= reader->size || gproji_is_line_end(reader->text[reader->at]) || reader->text[reader->at] == '#')
         return false;
-    }
     for (end = reader->at; end < reader->size; ++end) {
         char c = reader->text[end];
         if (gproji_is_blank(c) || gproji_is_line_end(c) || gproji_is_continuation(reader, end)) break;
@@ -13738,9 +13727,8 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
 
 /* Scans the next word, over line ends and comments; false at the end of the text. */
 GPROJI_INTERNAL bool gproji_next_word_anywhere(gproji_reader *reader) {
-    while (!gproji_next_word(reader)) {
+    while (!gproji_next_word(reader))
         if (!gproji_next_line(reader)) return false;
-    }
     return true;
 }
 
@@ -13782,9 +13770,8 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
     char quote[GPROJI_QUOTE_SIZE];
     size_t i = word[0] == '-' || word[0] == '+', digits = i;
     int64_t value = 0;
-    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
+    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i)
         if (value < INT64_C(100000000000)) value = value * 10 + (word[i] - '0');
-    }
     if (i > digits && slashes && i < reader->word_size && word[i] == '/') {
         while (i < reader->word_size && (gproji_is_digit(word[i]) || word[i] == '/' || word[i] == '-')) ++i;
     }
@@ -14021,10 +14008,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     gproji_soup soup;
     gproj_error *error = reader->error;
     gproj_code code;
-    if (!reader->size) {
+    if (!reader->size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text is empty; it needs at least one vertex");
-    }
     /* 1. No text has a zero byte; count the lines up to it. */
     zero = (const char *)memchr(reader->text, 0, reader->size);
     if (zero) {
@@ -14052,10 +14038,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     else
         gproji_read_obj(reader);
     if (reader->code) return reader->code;
-    if (!reader->vertex_count) {
+    if (!reader->vertex_count)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
-    }
     /* 3. The mesh. The builder's sentence about a vertex or face gets "line 203: " in front. */
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
@@ -14125,9 +14110,8 @@ typedef struct gproji_writer {
 } gproji_writer;
 
 GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
-    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length)) {
+    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length))
         writer->failed = true;
-    }
     writer->length = 0;
 }
 
@@ -14200,9 +14184,8 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF))
-        return gproji_fail(
-            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-            "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
+        return gproji_refuse(
+            error, "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
@@ -14253,26 +14236,23 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
     size_t most = heap->hook.limit > GPROJI_TEXT_MAX ? heap->hook.limit : GPROJI_TEXT_MAX;
     int64_t got;
     for (;;) {
-        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
+        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1))
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
-        }
         got = gproji_file_read(file, (char *)*text + *size, *capacity - *size);
-        if (got < 0) {
+        if (got < 0)
             return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                                "'%s' cannot be read; is it a folder, or the disk damaged?",
                                gproji_quote_path(path, quote));
-        }
         *size += (size_t)got;
         if (got == 0 || memchr((char *)*text + *size - got, 0, (size_t)got)) return GPROJ_OK;
-        if (*size > most) {
+        if (*size > most)
             return gproji_fail(
                 error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                 "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets more "
                 "be read",
                 gproji_quote_path(path, quote), (int64_t)most);
-        }
     }
 }
 
@@ -14305,13 +14285,10 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     const char *problem;
     gproj_code code;
     gproji_error_clear(error);
-    if (!mesh || !path) {
-        return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
-    }
-    if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
+    if (!mesh || !path) return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
+    if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT)
         return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
                              gproji_quote_path(path, quote));
-    }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     problem = gproji_save_begin(&saving, path);
@@ -14731,22 +14708,19 @@ GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *op
 GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                 gproj_error *error) {
     int32_t k;
-    if (options->crease_count < 0 || options->corner_count < 0) {
+    if (options->crease_count < 0 || options->corner_count < 0)
         return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
                              options->corner_count);
-    }
     for (k = 0; k < options->crease_count; ++k) {
         int32_t e = options->creases ? options->creases[k] : k;
-        if (e < 0 || e >= mesh->edge_count) {
+        if (e < 0 || e >= mesh->edge_count)
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
                                "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
                                mesh->edge_count);
-        }
-        if (gproji_crease_sharpness(options, k) < 0) {
+        if (gproji_crease_sharpness(options, k) < 0)
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
                                "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
                                options->sharpness[k]);
-        }
     }
     for (k = 0; k < options->corner_count; ++k) {
         int32_t v = options->corners ? options->corners[k] : k;
@@ -14763,36 +14737,31 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     bool loop = options->scheme == GPROJ_LOOP;
     int32_t level, f;
     gproj_code code;
-    if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
+    if (options->scheme != GPROJ_CATMULL_CLARK && !loop)
         return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
-    }
-    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX)
         return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
                              (int32_t)GPROJI_LEVELS_MAX);
-    }
-    if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels)
         return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
                              options->stencil_level, options->levels, options->levels - 1);
-    }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     /* Two triangles with the same corners have three edges in common, and so would their fine faces in the middle. */
     for (f = 0; loop && f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
-        if (mesh->face_degree[f] != 3) {
+        if (mesh->face_degree[f] != 3)
             return gproji_fail(
                 error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
                 "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
                 "or cut the faces into triangles",
                 f, mesh->face_degree[f]);
-        }
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
             return gproji_fail(
                 error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
                 "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
                 "edges; use Catmull-Clark, or remove them",
                 f, other);
-        }
     }
     code = gproji_check_creases(mesh, options, error);
     for (level = 1; !code && level <= options->levels; ++level) {
@@ -15002,9 +14971,8 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
         if (end - begin > GPROJI_LEAF_ITEMS) {
             middle = begin + (end - begin) / 2;
             for (i = begin; i < end; ++i) work->left[work->order[widest][i]] = i < middle;
-            for (axis = 0; axis < 3; ++axis) {
+            for (axis = 0; axis < 3; ++axis)
                 if (axis != widest) gproji_split_list(work, work->order[axis], begin, end);
-            }
             stack_begin[depth] = middle, stack_end[depth] = end, stack_parent[depth] = tree->node_count - 1;
             ++depth;
             end = middle, parent = -1;
@@ -15406,10 +15374,9 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     gproji_polygon_set(polygon, mesh, face);
     /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
     left = polygon->count, least = -polygon->tolerance;
-    for (i = 0; left > 3 && i < left && convex; ++i) {
+    for (i = 0; left > 3 && i < left && convex; ++i)
         convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
                  (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
-    }
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;
     /* 2. Others: ears until three corners are left. */
@@ -15548,9 +15515,8 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     if (complete) gproji_surface_normals(surface, mesh);
     for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
-    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface)) {
+    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface))
         return surface;
-    }
     gproji_fail_memory(error);
     gproj_surface_destroy(surface);
     return NULL;
@@ -19268,8 +19234,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     form->scale = 1;
     form->planarity = -1;
     if (!mesh) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "there is no mesh: reading or building it failed, see its error");
+        gproji_refuse(&form->error, "there is no mesh: reading or building it failed, see its error");
         return form;
     }
     /* 1. Arrays, and the system. */
@@ -21361,17 +21326,14 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
     double offset, factor;
     int32_t i;
     gproji_error_clear(error);
-    if (!form || !values || count < 0)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "unknowns: no form, no room, or %d of them", count);
+    if (!form || !values || count < 0) return gproji_refuse(error, "unknowns: no form, no room, or %d of them", count);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     x = gproj_system_values(form->system);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; ++i)
         if (first < 0 || i > INT32_MAX - first || !gproji_find_unit(form, first + i, &offset, &factor))
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
                                "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
                                (int64_t)first + i);
-    }
     for (i = 0; i < count; ++i) {
         gproji_find_unit(form, first + i, &offset, &factor);
         values[i] = offset + factor * x[first + i];
@@ -21429,9 +21391,7 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
     gproj_place place;
     int32_t groups;
     gproji_error_clear(error);
-    if (!form || !per_element)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "residuals: no form, or no room for them");
+    if (!form || !per_element) return gproji_refuse(error, "residuals: no form, or no room for them");
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     groups = gproj_system_group_count(form->system);
     if (group < 0 || group >= groups)
@@ -23948,9 +23908,8 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     hash = gproji_hash_doubles(hash, &form->scale, 1);
     hash = gproji_hash_variables(hash, form->system);
     /* 2. Groups. */
-    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+    for (i = 0; i < gproj_system_group_count(form->system); ++i)
         if (gproji_own_of(form, i) == GPROJI_OWN_NONE) hash = gproji_hash_group(hash, gproji_group_at(form->system, i));
-    }
     /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
         if (part->rule->own != GPROJI_OWN_NONE) continue;
@@ -24003,9 +23962,8 @@ GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t siz
     gproji_error_clear(error);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (!buffer || size != gproj_state_size(form))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
-                           (int64_t)gproj_state_size(form));
+        return gproji_refuse(error, "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
+                             (int64_t)gproj_state_size(form));
     return gproji_write_state(form, (uint8_t *)buffer, size, error);
 }
 
@@ -24028,10 +23986,9 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
     if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
-        return gproji_fail(
-            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-            "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
-            "is not the same");
+        return gproji_refuse(
+            error, "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
+                   "is not the same");
     in.size -= GPROJI_STATE_TAIL;
     /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
@@ -24433,16 +24390,13 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "drag: the forces have no values yet, solve the form before or set them");
     if (options && !(options->residual_bound >= 0))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "drag: a residual bound of %g is not >= 0", options->residual_bound);
+        return gproji_refuse(error, "drag: a residual bound of %g is not >= 0", options->residual_bound);
     if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
+        return gproji_refuse(error, "drag: there are no handles");
     for (k = 0; k < h->count; ++k) {
         int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
         double size = 0;
-        if (e < 0 || e > end)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "drag: the list of handle %d is no list", k);
+        if (e < 0 || e > end) return gproji_refuse(error, "drag: the list of handle %d is no list", k);
         for (; e < end; ++e) {
             double weight = h->weight ? h->weight[e] : 1;
             if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count)
