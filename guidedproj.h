@@ -13912,30 +13912,9 @@ GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64
     return !reader->code;
 }
 
-/* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
-GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
-    gproji_push_face(reader, degree, reader->line);
-    for (k = 0; k < degree && gproji_off_word(reader, face, faces, "faces"); ++k) {
-        index = gproji_word_index(reader, false);
-        if (!reader->code && (index < 0 || index >= vertices)) {
-            /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
-            bool from_one = index == vertices;
-            size_t c;
-            for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
-            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
-                        vertices - 1,
-                        from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
-                                 : "");
-        }
-        gproji_push(reader, &reader->face_vertex, (int32_t)index);
-    }
-    gproji_next_line(reader);
-}
-
 GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
-    int64_t count[2] = {0, 0}, i;
+    int64_t count[2] = {0, 0}, i, j, degree, index, vertices;
     bool plain, have_word = gproji_next_word_anywhere(reader);
     int32_t k;
     /* 1. The word OFF, which may be missing if the counts are there. */
@@ -13968,9 +13947,28 @@ GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
         gproji_next_line(reader);
         gproji_push_vertex(reader, x, line);
     }
-    /* 4. Faces: the degree, then the corners. */
-    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
-        gproji_off_face(reader, i, count[1]);
+    /* 4. Faces: the degree, the corners, then maybe colours. */
+    vertices = (int64_t)reader->vertex_count;
+    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i) {
+        degree = gproji_word_index(reader, false);
+        gproji_push_face(reader, degree, reader->line);
+        for (j = 0; j < degree && gproji_off_word(reader, i, count[1], "faces"); ++j) {
+            index = gproji_word_index(reader, false);
+            if (!reader->code && (index < 0 || index >= vertices)) {
+                /* A common mistake is to count from 1: one index is too large by one, and none so far was 0. */
+                bool from_one = index == vertices;
+                size_t c;
+                for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
+                gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
+                            vertices - 1,
+                            from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each "
+                                       "index"
+                                     : "");
+            }
+            gproji_push(reader, &reader->face_vertex, (int32_t)index);
+        }
+        gproji_next_line(reader);
+    }
 }
 
 /* -- reading -- */
@@ -14705,9 +14703,39 @@ GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *op
     return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
-                                                gproj_error *error) {
-    int32_t k;
+GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
+                                                    gproj_error *error) {
+    bool loop = options->scheme == GPROJ_LOOP;
+    int32_t level, f, k;
+    gproj_code code;
+    /* 1. The scheme, the levels, and positions. */
+    if (options->scheme != GPROJ_CATMULL_CLARK && !loop)
+        return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX)
+        return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
+                             (int32_t)GPROJI_LEVELS_MAX);
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels)
+        return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
+                             options->stencil_level, options->levels, options->levels - 1);
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    if (code) return code;
+    /* 2. Loop's triangles: two with the same corners would have fine faces in the middle with three common edges. */
+    for (f = 0; loop && f < mesh->face_count; ++f) {
+        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
+        if (mesh->face_degree[f] != 3)
+            return gproji_fail(
+                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
+                "or cut the faces into triangles",
+                f, mesh->face_degree[f]);
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
+            return gproji_fail(
+                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
+                "edges; use Catmull-Clark, or remove them",
+                f, other);
+    }
+    /* 3. Creases and corners. */
     if (options->crease_count < 0 || options->corner_count < 0)
         return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
                              options->corner_count);
@@ -14724,58 +14752,22 @@ GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gp
     }
     for (k = 0; k < options->corner_count; ++k) {
         int32_t v = options->corners ? options->corners[k] : k;
-        if (v >= 0 && v < mesh->vertex_count) continue;
-        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
-                           "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
-                           mesh->vertex_count);
+        if (v < 0 || v >= mesh->vertex_count)
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
+                               "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
+                               mesh->vertex_count);
     }
-    return GPROJ_OK;
-}
-
-GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
-                                                    gproj_error *error) {
-    bool loop = options->scheme == GPROJ_LOOP;
-    int32_t level, f;
-    gproj_code code;
-    if (options->scheme != GPROJ_CATMULL_CLARK && !loop)
-        return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
-    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX)
-        return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
-                             (int32_t)GPROJI_LEVELS_MAX);
-    if (options->stencil_level < 0 || options->stencil_level >= options->levels)
-        return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
-                             options->stencil_level, options->levels, options->levels - 1);
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
-    if (code) return code;
-    /* Two triangles with the same corners have three edges in common, and so would their fine faces in the middle. */
-    for (f = 0; loop && f < mesh->face_count; ++f) {
-        int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
-        if (mesh->face_degree[f] != 3)
-            return gproji_fail(
-                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
-                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
-                "or cut the faces into triangles",
-                f, mesh->face_degree[f]);
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
-            return gproji_fail(
-                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
-                "edges; use Catmull-Clark, or remove them",
-                f, other);
-    }
-    code = gproji_check_creases(mesh, options, error);
-    for (level = 1; !code && level <= options->levels; ++level) {
+    /* 4. The size of each level. */
+    for (level = 1; level <= options->levels; ++level) {
         gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
         if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX) {
-            code = gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
-                "can have; take fewer levels",
-                level, counts.vertices, counts.faces, counts.polyline_vertices);
-        }
+            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX)
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more "
+                               "than a mesh can have; take fewer levels",
+                               level, counts.vertices, counts.faces, counts.polyline_vertices);
     }
-    return code;
+    return GPROJ_OK;
 }
 
 /* -- all levels -- */
@@ -15288,11 +15280,6 @@ GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *p
     return !pool->failed;
 }
 
-/* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
-GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
-    return gproji_turn2(polygon->xy, a, b, c);
-}
-
 /* Projects a face to the plane; the ring has all corners. */
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
     const double up[3] = {0, 0, 1};
@@ -15320,13 +15307,13 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
    from the budget. */
 GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
     int32_t a = polygon->prev[b], c = polygon->next[b], i;
-    if (gproji_turn(polygon, a, b, c) <= polygon->tolerance) return false;
+    if (gproji_turn2(polygon->xy, a, b, c) <= polygon->tolerance) return false;
     for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
         --*budget;
         /* if any corner is in the triangle, one that turns right is */
-        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) > 0) continue;
-        if (gproji_turn(polygon, a, b, i) >= 0 && gproji_turn(polygon, b, c, i) >= 0 &&
-            gproji_turn(polygon, c, a, i) >= 0) {
+        if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) > 0) continue;
+        if (gproji_turn2(polygon->xy, a, b, i) >= 0 && gproji_turn2(polygon->xy, b, c, i) >= 0 &&
+            gproji_turn2(polygon->xy, c, a, i) >= 0) {
             return false;
         }
     }
@@ -15375,8 +15362,8 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
     left = polygon->count, least = -polygon->tolerance;
     for (i = 0; left > 3 && i < left && convex; ++i)
-        convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
-                 (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
+        convex = gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) >= least &&
+                 (i == 0 || i + 1 == left || gproji_turn2(polygon->xy, 0, i, i + 1) >= least);
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;
     /* 2. Others: ears until three corners are left. */
@@ -15465,34 +15452,13 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     gproji_destroy_object(surface, sizeof *surface);
 }
 
-/* Sums face normals, weighted by angles, into vertex normals. */
-GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
-    const double zero[3] = {0, 0, 0};
-    double n[3], a[3], b[3], cross[3];
-    int32_t f, h, v;
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproj_mesh_face_area_vector(mesh, f, n);
-        if (!gproji_normalise3(n, zero)) continue;
-        h = mesh->face_halfedge[f];
-        do {
-            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
-            gproji_cross3(a, b, cross);
-            /* by atan2, an edge without length makes the angle 0 */
-            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
-                               surface->normal + 3 * (size_t)mesh->origin[h]);
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-    }
-    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
-}
-
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    static const double zero[3] = {0, 0, 0};
     gproj_surface *surface;
     gproji_polygon polygon;
     gproji_pool pool, *keep;
-    int32_t f, triangles = 0, degree = 0;
+    int32_t f, h, k, v, triangles = 0, degree = 0;
+    double n[3], a[3], b[3], cross[3];
     bool complete;
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
@@ -15512,7 +15478,21 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     surface->triangle = (int32_t *)gproji_pool_take(keep, triangles, 3 * sizeof(int32_t));
     surface->triangle_face = (int32_t *)gproji_pool_take(keep, triangles, sizeof(int32_t));
     complete = gproji_polygon_take(&polygon, &pool, degree) && !keep->failed;
-    if (complete) gproji_surface_normals(surface, mesh);
+    /* 1. Vertex normals: face normals weighted by angles; by atan2, an edge without length makes the angle 0. */
+    for (f = 0; complete && f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, n);
+        if (!gproji_normalise3(n, zero)) continue;
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            gproji_cross3(a, b, cross);
+            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
+                               surface->normal + 3 * (size_t)mesh->origin[h]);
+        }
+    }
+    for (v = 0; complete && v < mesh->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
+    /* 2. Triangles, and the hierarchy over them. */
     for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
     if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface))
@@ -16217,7 +16197,7 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
     double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
     double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
-    double x = squares > 0 ? gproji_turn(polygon, a, b, c) / squares : 0;
+    double x = squares > 0 ? gproji_turn2(polygon->xy, a, b, c) / squares : 0;
     if (!(x > -1)) x = -1; /* a position is not finite */
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
@@ -17374,7 +17354,7 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 2, /* restarts: the recurrences' rounding ends with them */
+    GPROJI_PARALLEL_ROUNDS = 2, /* in each stage: the recurrences' rounding ends with them */
     GPROJI_PARALLEL_STEPS = 1000
 };
 
@@ -17419,34 +17399,14 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
     }
 }
 
-/* Descends once, until the slope is a small part of that at the start. */
-GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
-    size_t count = 3 * (size_t)p->mesh->vertex_count, i;
-    double square, before, start, curvature;
-    int32_t n;
-    gproji_apply_parallels(p, x, 1, p->slope);
-    for (i = 0; i < count; ++i) p->step[i] = p->slope[i] = -p->slope[i];
-    start = square = gproji_dot(p->slope, p->slope, count);
-    for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * start && square > 1e-30 * (double)count; ++n) {
-        gproji_apply_parallels(p, p->step, 0, p->image);
-        curvature = gproji_dot(p->step, p->image, count);
-        if (!(curvature > 0)) return;
-        for (i = 0; i < count; ++i) {
-            x[i] += square / curvature * p->step[i];
-            p->slope[i] -= square / curvature * p->image[i];
-        }
-        before = square;
-        square = gproji_dot(p->slope, p->slope, count);
-        for (i = 0; i < count; ++i) p->step[i] = p->slope[i] + square / before * p->step[i];
-    }
-}
-
 GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
+    size_t count = 3 * (size_t)mesh->vertex_count, k;
+    double square, before, first, curvature;
     gproji_parallels p;
     gproji_pool pool;
     bool taken;
-    int32_t i, stage, v;
+    int32_t i, v, round, n;
     gproji_pool_start(&pool, heap);
     p.mesh = mesh;
     p.normal = (double *)gproji_pool_take(&pool, mesh->face_count, 3 * sizeof *p.normal);
@@ -17458,7 +17418,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
     for (i = 0; taken && i < mesh->face_count; ++i)
         gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
     for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
-    /* Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
+    /* 1. Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
     for (v = 0; taken && v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
         double axis[3], cosine = 0;
@@ -17471,9 +17431,24 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
         } while (h != start);
         gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
     }
-    for (stage = 0; taken && stage < 2; ++stage) {
-        p.boundary = stage == 1;
-        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
+    /* 2. Conjugate gradients, in each round until the slope is a small part of the first. */
+    for (round = 0; taken && round < 2 * GPROJI_PARALLEL_ROUNDS; ++round) {
+        p.boundary = round >= GPROJI_PARALLEL_ROUNDS;
+        gproji_apply_parallels(&p, x, 1, p.slope);
+        for (k = 0; k < count; ++k) p.step[k] = p.slope[k] = -p.slope[k];
+        first = square = gproji_dot(p.slope, p.slope, count);
+        for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * first && square > 1e-30 * (double)count; ++n) {
+            gproji_apply_parallels(&p, p.step, 0, p.image);
+            curvature = gproji_dot(p.step, p.image, count);
+            if (!(curvature > 0)) break;
+            for (k = 0; k < count; ++k) {
+                x[k] += square / curvature * p.step[k];
+                p.slope[k] -= square / curvature * p.image[k];
+            }
+            before = square;
+            square = gproji_dot(p.slope, p.slope, count);
+            for (k = 0; k < count; ++k) p.step[k] = p.slope[k] + square / before * p.step[k];
+        }
     }
     gproji_pool_give_all(&pool);
     return taken;
@@ -17703,7 +17678,6 @@ typedef struct gproji_filling {
     int32_t vertices;
     int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
     int32_t cut_vertices;   /* then those on cuts */
-    int32_t leaves;         /* patches that were filled */
 } gproji_filling;
 
 GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
@@ -18616,7 +18590,6 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (q = 0; done && q < patch.quad.count; ++q)
         done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
     gproji_patch_give(&patch);
-    ++f->leaves;
     return done;
 }
 
@@ -18924,7 +18897,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     size_t at;
     gproj_code code;
     f->polygon.count = (size_t)n, f->patch.count = 1, f->patch.data[0] = n;
-    f->quad.count = 0, f->vertices = n, f->leaves = 0;
+    f->quad.count = 0, f->vertices = n;
     *good = false;
     /* 1. Rings, near the boundary as yet, and the outline inside them. */
     for (ring = 1; ring <= f->options.rings; ++ring)
@@ -18963,29 +18936,16 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     return code;
 }
 
-/* Tries variants from the wanted one on, with valences up to 5, then 6, then any. */
-GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
-    static const int32_t valence[3] = {5, 6, INT32_MAX};
-    int32_t variant = f->options.variant, pass, tries;
-    bool good = false;
-    gproj_code code = GPROJ_OK;
-    for (pass = 0; pass < 3; ++pass)
-        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries && !code && !good; ++tries) {
-            f->options.variant = variant + tries;
-            code = gproji_try_filling(f, valence[pass], &good);
-        }
-    if (code || good) return code;
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                       "no filling without a quad turned over was found; divide the sides finer or mark other corners");
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
+    static const int32_t valence[3] = {5, 6, INT32_MAX};
     gproji_mesh_object *object;
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
-    int32_t i;
+    int32_t variant, tries, i;
+    bool good = false;
+    size_t at;
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
@@ -19000,9 +18960,21 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_divide_sides(&f);
     if (!code) code = gproji_divide_curve(&f);
-    if (!code) code = gproji_fill_outline(&f);
+    /* 1. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
+    variant = f.options.variant;
+    for (tries = 0; !code && !good && tries < 3 * GPROJI_FILL_TRIES; ++tries) {
+        if (variant >= INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
+        f.options.variant = variant + tries % GPROJI_FILL_TRIES;
+        code = gproji_try_filling(&f, valence[tries / GPROJI_FILL_TRIES], &good);
+    }
+    if (!code && !good)
+        code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                           "no filling without a quad turned over was found; divide the sides finer or mark other "
+                           "corners");
     if (!code) code = gproji_build_filling(&f, object);
-    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides, found.patch_count = f.leaves;
+    /* 2. Properties. */
+    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides;
+    for (at = 0; !code && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
     for (i = f.boundary; !code && i < f.vertices; ++i) {
         int32_t valence = gproj_mesh_valence(&object->mesh, i);
         found.irregular_count += valence != 4;
