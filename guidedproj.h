@@ -13399,18 +13399,16 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return close(file->descriptor) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fsync(file->descriptor) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || fsync(file->descriptor) == 0;
+    return close(file->descriptor) == 0 && flushed;
+}
 
 /* Renames a file; the disk keeps the new name when its folder is flushed, which some file systems refuse. */
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     gproji_file names;
     if (rename(from, to) != 0) return false;
-    if (gproji_file_open(&names, folder)) {
-        gproji_file_flush(&names);
-        gproji_file_close(&names);
-    }
+    if (gproji_file_open(&names, folder)) gproji_file_close(&names, true);
     return true;
 }
 
@@ -13508,9 +13506,10 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return _write(file->descriptor, text, (unsigned int)size) == (int)size; /* a piece of a writer's buffer */
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return _close(file->descriptor) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return _commit(file->descriptor) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || _commit(file->descriptor) == 0;
+    return _close(file->descriptor) == 0 && flushed;
+}
 
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     const unsigned long replace_existing = 1, write_through = 8;
@@ -13569,9 +13568,10 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return fwrite(text, 1, size, ((gproji_file *)user)->stream) == size;
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return fclose(file->stream) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fflush(file->stream) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || fflush(file->stream) == 0;
+    return fclose(file->stream) == 0 && flushed;
+}
 
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     (void)folder;
@@ -13625,8 +13625,7 @@ GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char 
 /* Puts the new file in its place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
 GPROJI_INTERNAL const char *gproji_save_end(gproji_saving *saving, bool written) {
     char folder[GPROJI_PATH_MAX];
-    bool complete = written && gproji_file_flush(&saving->file);
-    if (!gproji_file_close(&saving->file)) complete = false;
+    bool complete = gproji_file_close(&saving->file, written) && written;
     if (complete) {
         memcpy(folder, saving->target, saving->folder_length);
         memcpy(folder + saving->folder_length, ".", 2);
@@ -14271,7 +14270,7 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
         return gproji_mesh_done(object, code);
     }
     code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
-    gproji_file_close(&file);
+    gproji_file_close(&file, false);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
     return gproji_mesh_done(object, code);
@@ -16583,40 +16582,50 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
-GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
-                                       double normal[3]) {
+/* Finds the least-squares plane of `count` vertices: vertex[h], h = first, next[first], ..., or first, first + 1, ...
+   without `next`. Returns their mean, a unit normal and, unless it is NULL, the direction in the plane in which they
+   scatter least. */
+GPROJI_INTERNAL void gproji_fit_plane(const double *position, int32_t count, const int32_t *vertex, const int32_t *next,
+                                      int32_t first, double mean[3], double normal[3], double *across) {
     double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
     static const double tiny = 1e-100, most = 1e300;
     double extent = 0, unit, du, dv;
-    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
+    int32_t h, k, i, j;
     gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < degree; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
-    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless the face is tiny. */
-    for (k = 0; k < degree && extent < tiny; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1)
+        gproji_add_scaled3(1.0 / count, position + 3 * (size_t)vertex[h], mean);
+    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless all is tiny. */
+    for (k = 0, h = first; k < count && extent < tiny; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
     }
     unit = extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
-    h = mesh->face_halfedge[face];
     /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow
        face has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         for (i = 0; i < 3; ++i) d[i] *= unit;
         for (i = 0; i < 3; ++i)
             for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
     }
     gproji_largest_eigenvector3(scatter, along);
     gproji_tangents3(along, u, v);
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         du = unit * gproji_dot3(d, u), dv = unit * gproji_dot3(d, v);
         uu += du * du, uv += du * dv, vv += dv * dv;
     }
     angle = 0.5 * atan2(2 * uv, uu - vv); /* from u to the direction across */
-    for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
+    for (k = 0; k < 3; ++k) {
+        normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        if (across) across[k] = cos(angle) * u[k] + sin(angle) * v[k];
+    }
+}
+
+GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
+                                       double normal[3]) {
+    gproji_fit_plane(position, mesh->face_degree[face], mesh->origin, mesh->next, mesh->face_halfedge[face], mean,
+                     normal, NULL);
 }
 
 /* The largest distance between a face's vertices and the least-squares plane, in the mesh's units. */
@@ -18612,13 +18621,13 @@ GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32
     memset(m, 0, sizeof *m);
     gproji_pool_start(&m->pool, f->heap);
     m->unknowns = unknowns, m->count = count;
-    m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
+    m->pair = gproji_take_ints(&m->pool, 2 * count);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
-    m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
+    m->row = gproji_take_ints(&m->pool, count);
     m->place = (int64_t *)gproji_pool_take(&m->pool, count, sizeof *m->place);
     m->value = (double *)gproji_pool_take(&m->pool, count, sizeof *m->value);
     m->cholesky = gproj_cholesky_create(f->host);
-    return m->pair && m->start && m->row && m->place && m->value && m->cholesky;
+    return !m->pool.failed && m->cholesky;
 }
 
 GPROJI_INTERNAL void gproji_pairs_give(gproji_pairs *m) {
@@ -18817,7 +18826,7 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
         u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
         u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
     }
-    if (!(u.edge && u.gradient && u.step && u.start)) code = gproji_fail_memory(f->error);
+    if (u.m.pool.failed || !u.m.cholesky) code = gproji_fail_memory(f->error);
     /* 1. Wanted edges: the boundary's own, harmonic inside. */
     size = u.start; /* still free, and large enough */
     for (i = 0; !code && i < f->boundary; ++i)
@@ -19770,11 +19779,9 @@ typedef struct gproji_gliding {
     int32_t *segment;         /* per vertex: the segment it glides on; -1: to be found */
 } gproji_gliding;
 
-GPROJI_INTERNAL gproji_gliding *gproji_gliding_of(const gproji_part *part) { return (gproji_gliding *)part->data; }
-
 /* The curve of the i-th vertex; NULL: it stays. */
 GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int32_t i) {
-    const gproji_gliding *g = gproji_gliding_of(part);
+    const gproji_gliding *g = (gproji_gliding *)part->data;
     return g->curve ? g->curve : g->curve_of[i] < 0 ? NULL : part->curve[g->curve_of[i]];
 }
 
@@ -19782,7 +19789,7 @@ GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int3
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group,
                                             const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    gproji_gliding *gliding = gproji_gliding_of(part);
+    gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t *segment = gliding->segment;
     bool settled = progress->settling >= 2;
     int32_t i;
@@ -19817,7 +19824,7 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     int32_t i;
     for (i = 0; i < part->count; ++i) {
         if (!gproji_curve_at(part, i)) continue;
-        gproji_gliding_of(part)->segment[i] = -1;
+        ((gproji_gliding *)part->data)->segment[i] = -1;
         gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
 }
@@ -19828,7 +19835,8 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
     for (i = 0; i < part->count && !stream->wrong; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
-        gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        gproji_pass_integer(stream, &((gproji_gliding *)part->data)->segment[i], -1,
+                            curve ? curve->segment_count - 1 : -1);
         for (k = 0; k < 3 && curve && !passing; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
     }
 }
@@ -19858,7 +19866,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        gproji_gliding_of(part)->segment[i] = -1;
+        ((gproji_gliding *)part->data)->segment[i] = -1;
         gproji_set_point(term, 3 * part->vertex[i]);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
         if (gproji_form_ready(form))
@@ -20019,13 +20027,26 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     return count;
 }
 
-/* Adds the differences along the boundary, except at corners. */
-GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t v;
+static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
+
+/* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
+GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
+    int32_t group = gproji_new_group(form, rule, weight), v, h, pair[2];
+    bool inside = rule != &gproji_boundary_fairness_rule;
+    const gproj_mesh *mesh;
+    gproji_difference d;
+    size_t vertices;
+    if (group < 0) return -1;
+    mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
+    if (inside) gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
+    for (v = 0; inside && v < mesh->vertex_count; ++v) {
+        int32_t count = gproji_vertex_ring(form, v);
+        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
+    }
     for (v = 0; v < mesh->vertex_count; ++v) {
-        gproji_difference d;
-        int32_t pair[2], h;
         if (!gproji_select_gliding(form, v)) continue;
         h = mesh->vertex_halfedge[v];
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
@@ -20033,37 +20054,15 @@ GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t g
         d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
         gproji_add_difference(form, group, NULL, &d);
     }
-}
-
-static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
-
-GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
-    int32_t group = gproji_new_group(form, &gproji_boundary_fairness_rule, weight);
-    if (group < 0) return -1;
-    gproji_add_boundary_differences(form, group);
-    return gproji_built(form, group);
-}
-
-static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
-
-GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    int32_t group = gproji_new_group(form, rule, weight), v;
-    size_t vertices;
-    if (group < 0) return -1;
-    vertices = (size_t)form->mesh->vertex_count;
-    gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
-        int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
-    }
-    gproji_add_boundary_differences(form, group);
     return gproji_built(form, group);
 }
 
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_add_fairness(form, &gproji_fairness_rule, weight);
+}
+
+GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_boundary_fairness_rule, weight);
 }
 
 /* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
@@ -20252,15 +20251,21 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
     return gproji_built(form, group);
 }
 
-/* The common length starts at the mean. */
-GPROJI_INTERNAL void gproji_start_length(gproji_part *part) {
-    double *x = gproj_system_values(part->form->system), mean = 0;
-    int32_t k;
-    for (k = 0; k < part->count; ++k) mean += gproji_edge_length(part->form->mesh, x, part->vertex[k]) / part->count;
+/* The common length of edges, or area of all faces, starts at the mean. */
+GPROJI_INTERNAL void gproji_start_mean(gproji_part *part) {
+    gproj_form *form = part->form;
+    bool edges = part->rule->place == GPROJ_PLACE_EDGE;
+    int32_t count = edges ? part->count : form->mesh->face_count, k;
+    double *x = gproj_system_values(form->system), mean = 0;
+    if (!edges) gproji_update_areas(form);
+    for (k = 0; k < count; ++k)
+        mean += (edges ? gproji_edge_length(form->mesh, x, part->vertex[k])
+                       : gproji_length3(form->work.area + 3 * (size_t)k)) /
+                count;
     x[*(const int32_t *)part->data] = mean;
 }
 
-static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_length, NULL, NULL};
+static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_mean, NULL, NULL};
 static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                       GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equal_lengths_acts};
 
@@ -20270,7 +20275,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
     const int32_t *common = gproji_part_unknowns(part, 1);
     int32_t k;
     if (!common) return -1;
-    gproji_start_length(part);
+    gproji_start_mean(part);
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         gproj_term term[10];
@@ -20350,46 +20355,17 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean original place of `count` vertices. */
-GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
-                                          double mean[3]) {
-    int32_t k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
-}
-
 /* Fits planes n'(v - m) = d to these vertices at the system's x, 4 numbers each: n, d; m is their mean original place.
    One plane, or two at right angles that intersect in the line of best fit. */
 GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
-                                       double plane[8]) {
-    const double *x = gproj_system_values(form->system);
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, mean[3] = {0, 0, 0}, middle[3], along[3], d[3], u[3],
-           v[3], uu = 0, uv = 0, vv = 0, angle;
-    int32_t k, i, j;
-    /* 1. The direction in which they scatter most. */
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, x + 3 * (size_t)vertices[k], mean);
-    for (k = 0; k < count; ++k) {
-        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
-        for (i = 0; i < 3; ++i)
-            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
-    }
-    gproji_largest_eigenvector3(scatter, along);
-    /* 2. Across it, the direction with the least scatter, which is the first plane's normal, and the other one. */
-    gproji_tangents3(along, u, v);
-    for (k = 0; k < count; ++k) {
-        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
-        uu += gproji_dot3(d, u) * gproji_dot3(d, u);
-        uv += gproji_dot3(d, u) * gproji_dot3(d, v);
-        vv += gproji_dot3(d, v) * gproji_dot3(d, v);
-    }
-    angle = 0.5 * atan2(2 * uv, uu - vv);
-    for (k = 0; k < 3; ++k) {
-        plane[k] = cos(angle) * v[k] - sin(angle) * u[k];
-        if (planes == 2) plane[4 + k] = cos(angle) * u[k] + sin(angle) * v[k];
-    }
-    gproji_original_mean(form, count, vertices, middle);
-    gproji_sub3(mean, middle, mean);
-    for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
+                                       double plane[8], double m[3]) {
+    double mean[3];
+    int32_t k;
+    gproji_fit_plane(gproj_system_values(form->system), count, vertices, NULL, 0, mean, plane, plane + 4);
+    gproji_set3(0, 0, 0, m);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], m);
+    gproji_sub3(mean, m, mean);
+    for (k = 0; k < planes; ++k) plane[4 * k + 3] = gproji_dot3(plane + 4 * k, mean);
 }
 
 /* Vertices on unknown planes, or on lines, each of which is two planes. */
@@ -20408,8 +20384,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
     double plane[8], middle[3];
     gproj_term term[7];
     if (count > (set->planes == 1 ? 3 : 2)) {
-        gproji_fit_planes(form, set->planes, count, vertex, plane);
-        gproji_original_mean(form, count, vertex, middle);
+        gproji_fit_planes(form, set->planes, count, vertex, plane, middle);
         first = gproj_system_add_variables(form->system, 4 * set->planes, 4, plane);
     }
     for (i = 0; i < count; ++i) set->first[from + i] = first;
@@ -20437,10 +20412,10 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
     const gproji_planes *set = (const gproji_planes *)part->data;
     int32_t from, to;
     for (from = 0; from < part->count; from = to) {
-        double plane[8];
+        double plane[8], middle[3];
         for (to = from + 1; to < part->count && set->first[to] == set->first[from]; ++to) continue;
         if (set->first[from] < 0) continue;
-        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane);
+        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane, middle);
         memcpy(gproj_system_values(part->form->system) + set->first[from], plane,
                4 * (size_t)set->planes * sizeof *plane);
     }
@@ -20601,18 +20576,6 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
 
 /* -- shapes of faces, areas, volume -- */
 
-/* Start for a circular face's axis point: the circumcentre at the system's x, else the mean. */
-GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    double mean[3] = {0, 0, 0}, normal[3];
-    int32_t h = mesh->face_halfedge[face], k;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
-    gproji_face_normal(form, face, normal);
-    gproji_circumcentre(mesh, x, face, mean, normal, out);
-}
-
 /* Makes a list for first variables, all -1, unless it is there; false without memory. */
 GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
     if (*list) return true;
@@ -20622,11 +20585,19 @@ GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t
     return true;
 }
 
+/* Axis points start at the faces' circumcentres, or means, by form->work.area. */
 GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
+    const gproj_mesh *mesh = part->form->mesh;
     double *x = gproj_system_values(part->form->system);
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        gproji_start_axis_point(part->form, part->vertex[i], x + part->form->axis[part->vertex[i]]);
+    int32_t i, k;
+    for (i = 0; i < part->count; ++i) {
+        int32_t face = part->vertex[i], h = mesh->face_halfedge[face];
+        double mean[3] = {0, 0, 0}, normal[3];
+        for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+            gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
+        gproji_face_normal(part->form, face, normal);
+        gproji_circumcentre(mesh, x, face, mean, normal, x + part->form->axis[face]);
+    }
 }
 
 static const double gproji_settle_free = 1e-4; /* relative to the trace: axis points are free along the axis */
@@ -20664,12 +20635,9 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     mesh = form->mesh;
     part = gproji_open_part(form, &gproji_circularity_rule, mesh->face_count, weight);
     if (!part) return -1;
-    gproji_update_areas(form);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
-        double start[3];
         if (mesh->face_degree[f] == 3) continue;
-        gproji_start_axis_point(form, f, start);
-        if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
+        if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, NULL);
         part->vertex[part->count++] = f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
@@ -20684,6 +20652,8 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
             gproj_system_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
+    gproji_update_areas(form);
+    if (gproji_form_ready(form)) gproji_start_axis_points(part);
     return gproji_built(form, part->group);
 }
 
@@ -20747,10 +20717,8 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     /* 1. Axes as variables, and how many rows there can be. */
     mesh = form->mesh;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        double start[3];
         if (gproj_mesh_valence(mesh, v) - gproj_mesh_is_boundary_vertex(mesh, v) < 4) continue;
-        gproji_cone_axis(mesh, gproj_system_values(form->system), v, start);
-        if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
+        if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, NULL);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
     part = gproji_open_part(form, &gproji_conicality_rule, rows, weight);
@@ -20776,6 +20744,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
             h = gproji_rotate(mesh, h);
         } while (h != start && gproji_form_ready(form));
     }
+    if (gproji_form_ready(form)) gproji_start_cones(part);
     return gproji_built(form, part->group);
 }
 
@@ -20851,18 +20820,7 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
     }
 }
 
-/* The common area starts at the mean. */
-GPROJI_INTERNAL void gproji_start_area(gproji_part *part) {
-    gproj_form *form = part->form;
-    double mean = 0;
-    int32_t f;
-    gproji_update_areas(form);
-    for (f = 0; f < form->mesh->face_count; ++f)
-        mean += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
-    gproj_system_values(form->system)[*(const int32_t *)part->data] = mean;
-}
-
-static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_area, NULL, NULL};
+static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_mean, NULL, NULL};
 static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,      GPROJ_PLACE_FACE,
                                                     GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_equal_areas_acts};
 
@@ -20873,7 +20831,7 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     int32_t f, count;
     if (!common) return -1;
     term = form->work.term;
-    gproji_start_area(part);
+    gproji_start_mean(part);
     gproji_add_group(part, weight);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
@@ -24274,7 +24232,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->variables = (int32_t)n;
     drag->state_size = gproj_state_size(form);
     list->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *list->start);
-    list->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *list->vertex);
+    list->vertex = gproji_take_ints(pool, entries);
     list->weight = (double *)gproji_pool_take(pool, entries, sizeof *list->weight);
     list->from = (double *)gproji_pool_take(pool, m, sizeof *list->from);
     list->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *list->gram);
@@ -24288,13 +24246,11 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->lift = (double *)gproji_pool_take(pool, m * m, sizeof *drag->lift);
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
-    drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
+    drag->name = gproji_take_ints(pool, m);
     drag->schedule =
         (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return list->start && list->vertex && list->weight && list->from && list->gram && drag->first && drag->begun &&
-           drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
-           drag->work && drag->name && drag->schedule && drag->state;
+    return !pool->failed;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
