@@ -12668,6 +12668,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g)
 /* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
 
+static const double gproji_zero[3] = {0, 0, 0}, gproji_up[3] = {0, 0, 1};
+
 /* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
@@ -12726,6 +12728,12 @@ typedef struct gproji_mesh_work {
     int32_t *mark;          /* vertex_count: scratch that each step sets anew */
     int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
+
+/* -1, which functions that return a number return after an error. */
+GPROJI_INLINE int32_t gproji_none(gproj_code code) {
+    (void)code;
+    return -1;
+}
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
@@ -12813,11 +12821,11 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
         if (count < 3) faces[count] = work->corner_face[c];
         ++count;
     }
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
-        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
-        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
-        count > 3 ? ", ..." : "");
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
+                       "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are "
+                       "left",
+                       gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and",
+                       faces[2], count > 3 ? ", ..." : "");
 }
 
 /* Makes all faces in a component agree with the first one. Turned faces change the order of the corners, so the edges
@@ -12901,11 +12909,10 @@ GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32
 GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
 
 GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
-        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
-        "of its own",
-        vertex);
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
+                       "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a "
+                       "vertex of its own",
+                       vertex);
 }
 
 /* Fills the half-edges from matched and oriented corners; refuses vertices with more than one fan. */
@@ -13239,11 +13246,10 @@ GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t 
 /* True if a polyline turns by more than 45 degrees at a point between two neighbours; false if one of them is the same
    point. */
 GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], const double after[3]) {
-    static const double none[3] = {0, 0, 0};
     double in[3], out[3];
     gproji_sub3(at, before, in);
     gproji_sub3(after, at, out);
-    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    if (!gproji_normalise3(in, gproji_zero) || !gproji_normalise3(out, gproji_zero)) return false;
     return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
 }
 
@@ -14181,8 +14187,9 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF))
-        return gproji_refuse(
-            error, "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
+        return gproji_refuse(error,
+                             "write: there is no mesh or no function to write with, or the format is neither OBJ nor "
+                             "OFF");
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
@@ -14245,11 +14252,10 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
         *size += (size_t)got;
         if (got == 0 || memchr((char *)*text + *size - got, 0, (size_t)got)) return GPROJ_OK;
         if (*size > most)
-            return gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets more "
-                "be read",
-                gproji_quote_path(path, quote), (int64_t)most);
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets "
+                               "more be read",
+                               gproji_quote_path(path, quote), (int64_t)most);
     }
 }
 
@@ -14674,9 +14680,10 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
         return NULL;
     }
     if (fine->column_count != coarse->row_count) {
-        gproji_refuse(
-            error, "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
-            fine->column_count, coarse->row_count);
+        gproji_refuse(error,
+                      "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one "
+                      "first",
+                      fine->column_count, coarse->row_count);
         return NULL;
     }
     gproji_rows_begin(&rows, fine->row_count, coarse->column_count, host);
@@ -14722,17 +14729,15 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     for (f = 0; loop && f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
         if (mesh->face_degree[f] != 3)
-            return gproji_fail(
-                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
-                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
-                "or cut the faces into triangles",
-                f, mesh->face_degree[f]);
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                               "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use "
+                               "Catmull-Clark, or cut the faces into triangles",
+                               f, mesh->face_degree[f]);
         if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
-            return gproji_fail(
-                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
-                "edges; use Catmull-Clark, or remove them",
-                f, other);
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                               "subdivide: faces %d and %d have the same three corners, and their finer faces would "
+                               "share edges; use Catmull-Clark, or remove them",
+                               f, other);
     }
     /* 3. Creases and corners. */
     if (options->crease_count < 0 || options->corner_count < 0)
@@ -15134,7 +15139,6 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
 /* Ends every function that makes a curve: checks the points, and finds the tangents and the hierarchy. Returns the
    curve, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    const double zero[3] = {0, 0, 0};
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
@@ -15147,7 +15151,7 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
         else
-            gproji_normalise3(t, zero);
+            gproji_normalise3(t, gproji_zero);
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
@@ -15281,12 +15285,11 @@ GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *p
 
 /* Projects a face to the plane; the ring has all corners. */
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
-    const double up[3] = {0, 0, 1};
     double n[3], u[3], v[3], d[3], extent = 0;
     const double *first;
     int32_t h = mesh->face_halfedge[face], i;
     gproj_mesh_face_area_vector(mesh, face, n);
-    gproji_normalise3(n, up);
+    gproji_normalise3(n, gproji_up);
     gproji_tangents3(n, u, v);
     first = mesh->position + 3 * (size_t)mesh->origin[h];
     polygon->count = mesh->face_degree[face], polygon->ears = 0;
@@ -15452,7 +15455,6 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
 }
 
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
-    static const double zero[3] = {0, 0, 0};
     gproj_surface *surface;
     gproji_polygon polygon;
     gproji_pool pool, *keep;
@@ -15480,7 +15482,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     /* 1. Vertex normals: face normals weighted by angles; by atan2, an edge without length makes the angle 0. */
     for (f = 0; complete && f < mesh->face_count; ++f) {
         gproj_mesh_face_area_vector(mesh, f, n);
-        if (!gproji_normalise3(n, zero)) continue;
+        if (!gproji_normalise3(n, gproji_zero)) continue;
         for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
             gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
@@ -15490,7 +15492,8 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
                                surface->normal + 3 * (size_t)mesh->origin[h]);
         }
     }
-    for (v = 0; complete && v < mesh->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
+    for (v = 0; complete && v < mesh->vertex_count; ++v)
+        gproji_normalise3(surface->normal + 3 * (size_t)v, gproji_zero);
     /* 2. Triangles, and the hierarchy over them. */
     for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
@@ -15503,7 +15506,6 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
 
 /* Without a surface or a point: face -1 at infinite distance, and zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
-    const double up[3] = {0, 0, 1};
     gproj_surface_hit hit;
     const double *corner[3];
     double weight[3], ab[3], ac[3];
@@ -15525,7 +15527,7 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
         gproji_sub3(corner[2], corner[0], ac);
         gproji_cross3(ab, ac, hit.normal);
     }
-    gproji_normalise3(hit.normal, up);
+    gproji_normalise3(hit.normal, gproji_up);
     return hit;
 }
 
@@ -15756,43 +15758,42 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
-/* Is a number in the range for this kind? */
-GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
-                                     gproj_place place, int32_t number, gproj_error *error) {
+/* Is a number in the range for vertices, edges or faces? */
+GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, int32_t number,
+                                     gproj_error *error) {
+    static const gproj_place place[GPROJI_EDIT_NUMBERED] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
+    static const char *const noun[GPROJI_EDIT_NUMBERED] = {"vertex", "edge", "face"};
     int32_t count = object->now.count[kind];
     if (number >= 0 && number < count) return true;
-    gproji_fail(error, GPROJ_ERROR_INDEX, place, number, "%s %d does not exist: they are 0 to %d", what, number,
-                count - 1);
-    return false;
+    return gproji_fail(error, GPROJ_ERROR_INDEX, place[kind], number, "%s %d does not exist: they are 0 to %d",
+                       noun[kind], number, count - 1) == GPROJ_OK;
 }
 
 /* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. -1 without an object. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
-    gproj_code code = GPROJ_OK;
     int32_t root;
-    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
     if (root < 0)
-        code =
-            gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
     else if (!(t >= 0 && t <= 1))
-        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                           "the parameter %g on edge %d is not from 0 to 1", t, edge);
-    return code ? -1 : 2 * root;
+        root = gproji_none(gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                                       "the parameter %g on edge %d is not from 0 to 1", t, edge));
+    return root < 0 ? -1 : 2 * root;
 }
 
 GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
-    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, "face", GPROJ_PLACE_FACE, face, error)) return false;
+    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, face, error)) return false;
     if (object->now.face_halfedge[face] >= 0) return true;
-    gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face);
-    return false;
+    return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face) ==
+           GPROJ_OK;
 }
 
 /* The half-edge in a face at the corner that a vertex number stands for; -1 and an error without one. */
 GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
                                                  gproj_error *error) {
     int32_t h;
-    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, "vertex", GPROJ_PLACE_VERTEX, vertex, error)) return -1;
+    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, vertex, error)) return -1;
     h = gproji_edit_corner(&object->now, face, gproji_edit_root(object->now.vertex_into, vertex));
     if (h < 0)
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face, "face %d has no corner at vertex %d", face,
@@ -15956,11 +15957,10 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
     if (code) return code;
     if (s->face[h] >= 0 && s->face[g] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
         gproj_mesh_is_boundary_vertex(&object->view, b))
-        return gproji_fail(
-            error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
-            "and the mesh would be pinched there",
-            h / 2, a, b);
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                           "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex "
+                           "%d, and the mesh would be pinched there",
+                           h / 2, a, b);
     /* The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
        only be those at triangles on the edge and at its faces. */
     if (object->stamp == INT32_MAX) {
@@ -16049,50 +16049,6 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
-GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_draft *draft,
-                                       int32_t *number[GPROJI_EDIT_NUMBERED]) {
-    const gproji_edit_store *s = &object->now;
-    gproji_soup *soup = &draft->soup;
-    int32_t *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
-    bool complete = true;
-    /* 1. Room, as large as can be needed. */
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
-        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        complete = complete && number[kind];
-    }
-    if (!gproji_draft_take(draft, pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
-                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]) ||
-        !complete)
-        return false;
-    /* 2. Vertices; a merged one gets the number that the lower one has already. */
-    vertex = number[GPROJI_EDIT_VERTEX], face = number[GPROJI_EDIT_FACE];
-    for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
-        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
-        if (s->vertex_into[v] != v) continue;
-        gproji_copy3(s->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count++);
-    }
-    /* 3. Faces. */
-    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
-        h = s->face_halfedge[f];
-        face[f] = h < 0 ? -1 : soup->face_count;
-        if (h < 0) continue;
-        draft->degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft->corner[corners++] = vertex[s->origin[h]];
-    }
-    /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
-    for (p = 0; p < s->polyline_count; ++p) {
-        begin = end;
-        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
-            v = vertex[s->polyline_vertex[i]];
-            if (end == begin || draft->vertex[end - 1] != v) draft->vertex[end++] = v;
-        }
-        if (end < begin + 2) end = begin;
-        if (end > begin) draft->start[++soup->polyline_count] = end;
-    }
-    return true;
-}
-
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
@@ -16100,19 +16056,52 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
+    gproji_soup *soup = &draft.soup;
     int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
-    int32_t kind, f, e, h, k, i, *edge;
+    int32_t *vertex, *edge, *face, kind, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
+    bool taken = true;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_write(object, &pool, &draft, number) ? gproji_mesh_build(made, &draft.soup, error)
-                                                            : gproji_fail_memory(error);
-    /* The mesh has numbered the edges: both are walked side by side. */
-    edge = number[GPROJI_EDIT_EDGE];
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
+        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        taken = taken && number[kind];
+    }
+    vertex = number[GPROJI_EDIT_VERTEX], edge = number[GPROJI_EDIT_EDGE], face = number[GPROJI_EDIT_FACE];
+    if (!gproji_draft_take(&draft, &pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]))
+        taken = false;
+    code = taken ? GPROJ_OK : gproji_fail_memory(error);
+    /* 1. Vertices; a merged one gets the number that the lower one has already. */
+    for (v = 0; !code && v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
+        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
+        if (s->vertex_into[v] != v) continue;
+        gproji_copy3(s->position + 3 * (size_t)v, draft.position + 3 * (size_t)soup->vertex_count++);
+    }
+    /* 2. Faces. */
+    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        h = s->face_halfedge[f];
+        face[f] = h < 0 ? -1 : soup->face_count;
+        if (h < 0) continue;
+        draft.degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft.corner[corners++] = vertex[s->origin[h]];
+    }
+    /* 3. Polylines, without repeated vertices; those with fewer than two are left out. */
+    for (p = 0; !code && p < s->polyline_count; ++p) {
+        begin = end;
+        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
+            v = vertex[s->polyline_vertex[i]];
+            if (end == begin || draft.vertex[end - 1] != v) draft.vertex[end++] = v;
+        }
+        if (end < begin + 2) end = begin;
+        if (end > begin) draft.start[++soup->polyline_count] = end;
+    }
+    if (!code) code = gproji_mesh_build(made, soup, error);
+    /* 4. Edges, which the mesh has numbered: both are walked side by side. */
     for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[number[GPROJI_EDIT_FACE][f]];
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[face[f]];
         for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
@@ -16150,22 +16139,19 @@ GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    gproj_code code;
     int32_t from, to;
     if (!object || !gproji_edit_given_face(object, face, error)) return -1;
     from = gproji_edit_given_corner(object, face, vertex, error);
     to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
     if (to < 0) return -1;
     if (from == to)
-        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
-                           "face %d cannot be cut from vertex %d to itself", face, vertex);
-    else if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
-        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                           "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
-                           other);
-    else
-        code = gproji_edit_reserve(object, 0, 1, 1, 0, error);
-    return code ? -1 : gproji_edit_cut(object, from, to) / 2;
+        return gproji_none(gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                                       "face %d cannot be cut from vertex %d to itself", face, vertex));
+    if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
+        return gproji_none(gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                                       "face %d cannot be cut between vertices %d and %d: they have an edge already",
+                                       face, vertex, other));
+    return gproji_edit_reserve(object, 0, 1, 1, 0, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
@@ -16672,9 +16658,8 @@ GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
 
 /* A face's unit normal along the vectorial area; 0 without area. */
 GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_area_vector(mesh, position, face, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Unit normals on demand. Each vertex around a large face asks for that face's, so the last few are remembered. */
@@ -16712,11 +16697,10 @@ GPROJI_INTERNAL void gproji_recall_normal(gproji_normals *normals, int32_t face,
 
 /* Finds the mean unit normal over the faces around a vertex; e_z without faces. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vertex, double out[3]) {
-    static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
     double n[3];
-    gproji_copy3(up, out);
+    gproji_copy3(gproji_up, out);
     if (start < 0) return 0;
     gproji_set3(0, 0, 0, out);
     do {
@@ -16727,7 +16711,7 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vert
         }
         h = gproji_rotate(mesh, h);
     } while (h != start);
-    gproji_normalise3(out, up);
+    gproji_normalise3(out, gproji_up);
     return count;
 }
 
@@ -16735,7 +16719,6 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vert
    vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
    to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex, double axis[3]) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = normals->mesh;
     int32_t count = gproji_mean_normal(normals, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
     double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant;
@@ -16746,12 +16729,12 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
             double bu, bv, bm;
             gproji_sub3(gproji_corner_at(mesh, normals->position, h ^ 1), gproji_corner_at(mesh, normals->position, h),
                         e);
-            gproji_normalise3(e, none);
+            gproji_normalise3(e, gproji_zero);
             gproji_recall_normal(normals, mesh->face[h], b);
             gproji_recall_normal(normals, mesh->face[h ^ 1], n);
             gproji_add_scaled3(1, n, b);
             gproji_cross3(e, b, b);
-            gproji_normalise3(b, none);
+            gproji_normalise3(b, gproji_zero);
             bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
             uu += bu * bu, uv += bu * bv, vv += bv * bv;
             um -= bu * bm, vm -= bv * bm;
@@ -16766,13 +16749,6 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
     gproji_add_scaled3((vm * uu - um * uv) / determinant, v, axis);
     gproji_normalise3(axis, axis);
     return count;
-}
-
-/* Finds the axis at a single vertex. */
-GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                         double axis[3]) {
-    gproji_normals normals = gproji_normals_of(mesh, position);
-    return gproji_find_axis(&normals, vertex, axis);
 }
 
 /* The largest difference between the normals around a vertex in angle to their axis; 0 with fewer than four faces. */
@@ -17241,9 +17217,8 @@ typedef struct gproji_mirrors {
 
 /* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Mirrors the 3x3 matrix `in` in the plane orthogonal to the half-edge: out = (I - 2 e e') in. */
@@ -17261,7 +17236,6 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
    parallel. */
 GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
                                        double m[3]) {
-    static const double up[3] = {0, 0, 1};
     double gaps[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
     int32_t at, edges = 0, sweep, best = 0, i, j, k;
     /* 1. `gaps`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
@@ -17297,23 +17271,18 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
         gproji_add_scaled3(gproji_dot3(column, wanted), column, m);
     }
     if (gproji_length3(m) < 0.5 * gproji_length3(wanted)) gproji_copy3(wanted, m);
-    gproji_normalise3(m, up);
+    gproji_normalise3(m, gproji_up);
 }
 
-GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
-    static const double none[3] = {0, 0, 0};
+GPROJI_INTERNAL bool gproji_vertex_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
-    gproji_pool pool;
-    bool taken;
     int32_t v, at;
-    gproji_pool_start(&pool, heap);
     work.first = work.last = 0;
-    work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
-    work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
-    work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
-    taken = !pool.failed;
-    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+    work.image = (double *)gproji_pool_take(pool, mesh->vertex_count, 9 * sizeof *work.image);
+    work.queue = gproji_take_ints(pool, mesh->vertex_count);
+    work.reached = (bool *)gproji_pool_take_zeroed(pool, mesh->vertex_count, sizeof *work.reached);
+    for (v = 0; !pool->failed && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
         /* 1. Reflections along a breadth-first tree, which keeps their products short. */
@@ -17338,11 +17307,10 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
             const double *image = work.image + 9 * (size_t)work.queue[at];
             double *out = x + 3 * (size_t)work.queue[at];
             gproji_set3(gproji_dot3(image, m), gproji_dot3(image + 3, m), gproji_dot3(image + 6, m), out);
-            gproji_normalise3(out, none);
+            gproji_normalise3(out, gproji_zero);
         }
     }
-    gproji_pool_give_all(&pool);
-    return taken;
+    return !pool->failed;
 }
 
 /* -- the field for a face offset -- */
@@ -17408,27 +17376,23 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
     }
 }
 
-GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
+GPROJI_INTERNAL bool gproji_face_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     size_t count = 3 * (size_t)mesh->vertex_count, k;
     double square, before, first, curvature;
     gproji_parallels p;
-    gproji_pool pool;
-    bool taken;
     int32_t i, v, round, n;
-    gproji_pool_start(&pool, heap);
     p.mesh = mesh;
-    p.normal = (double *)gproji_pool_take(&pool, mesh->face_count, 3 * sizeof *p.normal);
-    p.direction = (double *)gproji_pool_take(&pool, mesh->edge_count, 3 * sizeof *p.direction);
-    p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
-    p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
-    p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
-    taken = !pool.failed;
-    for (i = 0; taken && i < mesh->face_count; ++i)
-        gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
-    for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
+    p.normal = (double *)gproji_pool_take(pool, mesh->face_count, 3 * sizeof *p.normal);
+    p.direction = (double *)gproji_pool_take(pool, mesh->edge_count, 3 * sizeof *p.direction);
+    p.slope = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.slope);
+    p.step = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.step);
+    p.image = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.image);
+    if (pool->failed) return false;
+    for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
+    for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
     /* 1. Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
-    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+    for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
         double axis[3], cosine = 0;
         gproji_set3(0, 0, 0, x + 3 * (size_t)v);
@@ -17441,7 +17405,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
         gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
     }
     /* 2. Conjugate gradients, in each round until the slope is a small part of the first. */
-    for (round = 0; taken && round < 2 * GPROJI_PARALLEL_ROUNDS; ++round) {
+    for (round = 0; round < 2 * GPROJI_PARALLEL_ROUNDS; ++round) {
         p.boundary = round >= GPROJI_PARALLEL_ROUNDS;
         gproji_apply_parallels(&p, x, 1, p.slope);
         for (k = 0; k < count; ++k) p.step[k] = p.slope[k] = -p.slope[k];
@@ -17459,19 +17423,19 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
             for (k = 0; k < count; ++k) p.step[k] = p.slope[k] + square / before * p.step[k];
         }
     }
-    gproji_pool_give_all(&pool);
-    return taken;
+    return true;
 }
 
 /* -- the meshes -- */
 
-typedef bool (*gproji_field)(gproji_heap *heap, const gproj_mesh *mesh, double *x);
+/* Finds x from zeros; false without memory for the work. */
+typedef bool (*gproji_field)(gproji_pool *pool, const gproj_mesh *mesh, double *x);
 
 /* Makes the mesh with vertices v + distance * x. */
 GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distance, gproji_field field,
                                           const gproj_host *host, gproj_error *error) {
     gproj_mesh *offset;
-    gproji_heap *heap;
+    gproji_pool pool;
     gproj_code code;
     size_t count, i;
     double *x;
@@ -17484,12 +17448,12 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
     if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
     offset = gproj_mesh_copy(mesh, host, error);
     if (!offset) return NULL;
-    heap = &gproji_mesh_owner(offset)->heap;
+    gproji_pool_start(&pool, &gproji_mesh_owner(offset)->heap);
     count = 3 * (size_t)mesh->vertex_count;
-    x = (double *)gproji_take_zeroed(heap, count, sizeof *x);
-    code = x && field(heap, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
+    x = (double *)gproji_pool_take_zeroed(&pool, (int64_t)count, sizeof *x);
+    code = x && field(&pool, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
     for (i = 0; !code && i < count; ++i) offset->position[i] += distance * x[i];
-    gproji_give(heap, x, count, sizeof *x);
+    gproji_pool_give_all(&pool);
     if (!code) code = gproji_check_positions(mesh->vertex_count, offset->position, "offset vertex", error);
     if (!code) return offset;
     gproj_mesh_destroy(offset);
@@ -17525,8 +17489,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     int32_t e;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
-        gproji_refuse(
-            error, "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
+        gproji_refuse(error,
+                      "a support structure is between a mesh and its offset: there are not two meshes of the same "
+                      "faces");
         return NULL;
     }
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
@@ -17556,7 +17521,6 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
-    static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
     double unit, d[3], n[3];
     int32_t f, v, e, k, h;
@@ -17592,7 +17556,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
         gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
         gproji_cross3(direction, n, n);
-        gproji_normalise3(n, none);
+        gproji_normalise3(n, gproji_zero);
         m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
     }
     return m;
@@ -18064,7 +18028,6 @@ GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q
 
 /* Checks the curve and the options that stand alone, and projects the points into the curve's plane. */
 GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
-    static const double none[3] = {0, 0, 0};
     const gproj_fill_options *o = &f->options;
     double a[3], b[3], cross[3], extent = 0;
     int32_t i, j;
@@ -18096,7 +18059,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
         gproji_cross3(a, b, cross);
         gproji_add_scaled3(0.5, cross, f->normal);
     }
-    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, none))
+    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, gproji_zero))
         return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "the curve encloses no area; it must not run back along itself");
     gproji_tangents3(f->normal, f->across, f->up);
@@ -18259,11 +18222,11 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     }
     if (sum % 2) { /* names the side that would bear it best */
         side = gproji_best_change(f, edges, &change);
-        return gproji_fail(
-            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
-            "of %d%s",
-            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                           "the sides have %d edges together, but quads need an even number; give side %d %d edges "
+                           "instead of %d%s",
+                           sum, side, edges[side] + change, edges[side],
+                           f->options.keep_points ? " (add or leave out a point)" : "");
     }
     if (sum < 4)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
@@ -19284,8 +19247,7 @@ GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
 GPROJ_API gproj_system *gproj_form_system(gproj_form *form) { return form ? form->system : NULL; }
 
 GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double *scale) {
-    static const double origin[3] = {0, 0, 0};
-    if (centre) gproji_copy3(form ? form->centre : origin, centre);
+    if (centre) gproji_copy3(form ? form->centre : gproji_zero, centre);
     if (scale) *scale = form ? form->scale : 1;
 }
 
@@ -19408,12 +19370,6 @@ GPROJI_INTERNAL bool gproji_rule_is_on(const gproj_form *form, const gproji_rule
     for (part = form->part; part; part = part->next)
         if (part->rule == rule && gproji_is_on(form, part->group)) return true;
     return false;
-}
-
-/* What a builder returns after an error: -1. */
-GPROJI_INLINE int32_t gproji_none(gproj_code code) {
-    (void)code;
-    return -1;
 }
 
 GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, double a) {
@@ -19609,7 +19565,6 @@ GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
 
 /* The unit sum of form->work.area around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
-    static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     gproji_set3(0, 0, 0, out);
@@ -19617,15 +19572,14 @@ GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex
         if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->work.area + 3 * (size_t)mesh->face[h], out);
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    gproji_normalise3(out, up);
+    gproji_normalise3(out, gproji_up);
 }
 
 /* A face's unit normal by form->work.area; without a direction, the normal at the first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_copy3(form->work.area + 3 * (size_t)face, out);
     if (gproji_length3(out) > 1e-12)
-        gproji_normalise3(out, none);
+        gproji_normalise3(out, gproji_zero);
     else
         gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
 }
@@ -20069,7 +20023,6 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
    vertex or face, which is in part->vertex. */
 GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
                                                 const gproj_progress *progress) {
-    static const double up[3] = {0, 0, 1};
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
     bool faces = part->rule->place == GPROJ_PLACE_FACE;
@@ -20084,7 +20037,7 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
         if (r == 0 || element != part->vertex[(r - 1) / 2]) {
             if (faces) {
                 gproji_copy3(x + part->form->normal[element], normal);
-                gproji_normalise3(normal, up);
+                gproji_normalise3(normal, gproji_up);
             } else {
                 gproji_vertex_normal(part->form, element, normal);
             }
@@ -20511,13 +20464,12 @@ static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPR
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
-    static const double none[3] = {0, 0, 0};
     double n[3] = {0, 0, 0}, across[2][3];
     int32_t group, i, k, c;
     if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (normal) gproji_copy3(normal, n);
-    if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n)))
+    if (!gproji_normalise3(n, gproji_zero) || !gproji_is_finite(gproji_length3(n)))
         return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal has no direction"));
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
@@ -20540,9 +20492,8 @@ static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
    and v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
-    int32_t group, v, k, ring[3];
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight);
+    int32_t group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight), v, k, ring[3];
+    if (group < 0) return -1;
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
         gproj_term term[12];
         /* A boundary vertex's ring begins and ends along the boundary. */
@@ -20562,9 +20513,8 @@ static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAIN
                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
-    int32_t group, i;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_lifting_rule, weight);
+    int32_t group = gproji_new_group(form, &gproji_lifting_rule, weight), i;
+    if (group < 0) return -1;
     for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
         gproj_term term;
         if (i % 3 == 2) continue; /* z is free */
@@ -20691,9 +20641,10 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
 
 /* Gives cone axes the values that fit the vertices at x best. */
 GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int32_t from, int32_t to) {
+    gproji_normals normals = gproji_normals_of(part->form->mesh, x);
     for (; from < to; ++from) {
         int32_t v = ~part->vertex[from];
-        if (v >= 0) gproji_cone_axis(part->form->mesh, x, v, x + part->form->cone[v]);
+        if (v >= 0) gproji_find_axis(&normals, v, x + part->form->cone[v]);
     }
 }
 
@@ -20752,9 +20703,8 @@ static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_W
                                                        GPROJI_OWN_NONE,  GPROJI_ORDINARY, NULL};
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
-    int32_t group, f, k, c;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_parallelograms_rule, weight);
+    int32_t group = gproji_new_group(form, &gproji_parallelograms_rule, weight), f, k, c;
+    if (group < 0) return -1;
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term term[4];
         if (form->mesh->face_degree[f] != 4) continue;
@@ -20782,14 +20732,13 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
 
 /* Linearises a face's scale |a(v)| at form->work.area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
     int32_t h = mesh->face_halfedge[face], k, c;
     double normal[3], slope[3], constant;
     gproji_copy3(form->work.area + 3 * (size_t)face, normal);
     constant = scale * gproji_length3(normal);
-    gproji_normalise3(normal, none);
+    gproji_normalise3(normal, gproji_zero);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
         const double *v = x + 3 * (size_t)mesh->origin[h];
         gproji_area_slope(form, h, normal, slope);
@@ -21005,7 +20954,6 @@ enum {
 /* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient. `size`:
    by how much C changes when the mesh grows by a mean edge length. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *price = part->given + GPROJI_PRICE;
     const double *x = gproj_system_values(form->system);
@@ -21018,7 +20966,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         gproji_sub3(x + i, x + j, d);
         gproji_sum_add(&sum, gproji_length3(d));
-        gproji_normalise3(d, none);
+        gproji_normalise3(d, gproji_zero);
         gproji_add_scaled3(price[0], d, gradient + i);
         gproji_add_scaled3(-price[0], d, gradient + j);
     }
@@ -21028,7 +20976,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         int32_t h = mesh->face_halfedge[f];
         gproji_copy3(form->work.area + 3 * (size_t)f, d);
         gproji_sum_add(&areas, gproji_length3(d));
-        gproji_normalise3(d, none);
+        gproji_normalise3(d, gproji_zero);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             gproji_area_slope(form, h, d, slope);
             gproji_add_scaled3(price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
@@ -23916,9 +23864,9 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
     if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
-        return gproji_refuse(
-            error, "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
-                   "is not the same");
+        return gproji_refuse(error,
+                             "state: it belongs to another form: the mesh that it was made from, or what was added to "
+                             "it, is not the same");
     in.size -= GPROJI_STATE_TAIL;
     /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
