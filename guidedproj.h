@@ -12707,10 +12707,10 @@ GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, i
                                        int64_t corners, int64_t polylines, int64_t polyline_vertices) {
     memset(draft, 0, sizeof *draft);
     draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
-    draft->soup.face_degree = draft->degree = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
-    draft->soup.face_vertex = draft->corner = (int32_t *)gproji_pool_take(pool, corners, sizeof(int32_t));
-    draft->soup.polyline_start = draft->start = (int32_t *)gproji_pool_take(pool, polylines + 1, sizeof(int32_t));
-    draft->soup.polyline_vertex = draft->vertex = (int32_t *)gproji_pool_take(pool, polyline_vertices, sizeof(int32_t));
+    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
+    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
+    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
+    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
     if (draft->start) draft->start[0] = 0;
     return !pool->failed;
 }
@@ -13014,7 +13014,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
     mesh->position = (double *)gproji_pool_copy(pool, soup->position, soup->vertex_count, 3 * sizeof(double));
-    object->links = (int32_t *)gproji_pool_take(pool, gproji_mesh_links(mesh), sizeof(int32_t));
+    object->links = gproji_take_ints(pool, gproji_mesh_links(mesh));
     if (pool->failed) return gproji_fail_memory(error);
     gproji_mesh_show(object);
     code = gproji_mesh_link(object, work, error);
@@ -13071,16 +13071,16 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     object->mesh.vertex_count = soup->vertex_count;
     object->mesh.face_count = soup->face_count;
     gproji_pool_start(&pool, &object->heap);
-    work.corner_vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_face = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_next = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_edge = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_order = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.edge_corner = (int32_t *)gproji_pool_take(&pool, 2 * corners, sizeof(int32_t));
-    work.face_start = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->face_count + 1, sizeof(int32_t));
-    work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
-    work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
-    work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
+    work.corner_vertex = gproji_take_ints(&pool, corners);
+    work.corner_face = gproji_take_ints(&pool, corners);
+    work.corner_next = gproji_take_ints(&pool, corners);
+    work.corner_edge = gproji_take_ints(&pool, corners);
+    work.corner_order = gproji_take_ints(&pool, corners);
+    work.edge_corner = gproji_take_ints(&pool, 2 * corners);
+    work.face_start = gproji_take_ints(&pool, (int64_t)soup->face_count + 1);
+    work.face_state = gproji_take_ints(&pool, soup->face_count);
+    work.mark = gproji_take_ints(&pool, soup->vertex_count);
+    work.slot = gproji_take_ints(&pool, (int64_t)soup->vertex_count + 1);
     code = pool.failed ? gproji_fail_memory(error) : gproji_mesh_connect(object, soup, &work, error);
     gproji_pool_give_all(&pool);
     return code;
@@ -14136,18 +14136,13 @@ GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
 GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
                                              void *user) {
     gproji_writer writer;
-    char number[GPROJ_NUMBER_SIZE];
+    char number[GPROJ_NUMBER_SIZE], head[64];
     bool off = format == GPROJ_FORMAT_OFF;
     int32_t v, f, p, h, i, k;
     writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
     if (off) {
-        gproji_put(&writer, "OFF\n");
-        gproji_put_integer(&writer, mesh->vertex_count);
-        gproji_put(&writer, " ");
-        gproji_put_integer(&writer, mesh->face_count);
-        gproji_put(&writer, " ");
-        gproji_put_integer(&writer, mesh->edge_count);
-        gproji_put(&writer, "\n");
+        gproji_format(head, sizeof head, "OFF\n%d %d %d\n", mesh->vertex_count, mesh->face_count, mesh->edge_count);
+        gproji_put(&writer, head);
     }
     for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
         if (!off) gproji_put(&writer, "v ");
@@ -14989,13 +14984,13 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy 
     int32_t i, axis;
     bool complete;
     tree->item_count = count, tree->node_count = 0;
-    tree->item = (int32_t *)gproji_pool_take(keep, count, sizeof(int32_t));
+    tree->item = gproji_take_ints(keep, count);
     tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
     gproji_pool_start(&pool, keep->heap);
     work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
-    work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    work.spare = gproji_take_ints(&pool, count);
     work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
-    for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    for (axis = 0; axis < 3; ++axis) work.order[axis] = gproji_take_ints(&pool, count);
     complete = !keep->failed && !pool.failed;
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
@@ -15276,9 +15271,9 @@ typedef struct gproji_polygon {
 /* Takes the arrays for faces up to a degree; false without memory. */
 GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *pool, int32_t degree) {
     polygon->xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
-    polygon->vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    polygon->next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    polygon->prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->vertex = gproji_take_ints(pool, degree);
+    polygon->next = gproji_take_ints(pool, degree);
+    polygon->prev = gproji_take_ints(pool, degree);
     polygon->ear = (int32_t *)gproji_pool_take(pool, degree, 3 * sizeof(int32_t));
     return !pool->failed;
 }
@@ -15477,7 +15472,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     surface->position = (double *)gproji_pool_copy(keep, mesh->position, mesh->vertex_count, 3 * sizeof(double));
     surface->normal = (double *)gproji_pool_take_zeroed(keep, mesh->vertex_count, 3 * sizeof(double));
     surface->triangle = (int32_t *)gproji_pool_take(keep, triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_pool_take(keep, triangles, sizeof(int32_t));
+    surface->triangle_face = gproji_take_ints(keep, triangles);
     complete = gproji_polygon_take(&polygon, &pool, degree) && !keep->failed;
     /* 1. Vertex normals: face normals weighted by angles; by atan2, an edge without length makes the angle 0. */
     for (f = 0; complete && f < mesh->face_count; ++f) {
@@ -15938,30 +15933,28 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
-/* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
-GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
-    int32_t x, y;
-    if (!gproji_edit_sees(s, h, 3)) return GPROJ_OK;
-    x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
-    if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                       "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its edges",
-                       h / 2, s->face[h]);
-}
-
 GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], left, right, i;
-    gproj_code code = gproji_check_vanishing(s, h, error);
-    if (!code) code = gproji_check_vanishing(s, g, error);
-    if (code) return code;
+    /* 1. A triangle that vanishes must not be an edge without a face then. */
+    for (i = 0; i < 2; ++i) {
+        int32_t at = h ^ i, x, y;
+        if (!gproji_edit_sees(s, at, 3)) continue;
+        x = s->face[s->next[at] ^ 1], y = s->face[s->prev[at] ^ 1];
+        if (x == y && (x < 0 || x == s->face[at ^ 1]))
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its "
+                               "edges",
+                               h / 2, s->face[at]);
+    }
+    /* 2. The mesh must not be pinched between two boundaries. */
     if (s->face[h] >= 0 && s->face[g] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
         gproj_mesh_is_boundary_vertex(&object->view, b))
         return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
                            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex "
                            "%d, and the mesh would be pinched there",
                            h / 2, a, b);
-    /* The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
+    /* 3. The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
        only be those at triangles on the edge and at its faces. */
     if (object->stamp == INT32_MAX) {
         gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
@@ -16269,9 +16262,9 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, 0, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.halfedge = gproji_take_ints(&pool, degree);
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
-    work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
+    work.apex = gproji_take_ints(&pool, side * side);
     if (!code && !gproji_polygon_take(&work.polygon, &pool, degree)) code = gproji_fail_memory(error);
     if (!code && face == -1) { /* all faces or none: a later one may be refused */
         saved = gproji_edit_save(object, &copy);
@@ -16314,8 +16307,8 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     if (strip->count == 1)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
                            h / 2);
-    strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
-    strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    strip->rung = gproji_take_ints(pool, strip->count);
+    strip->side = gproji_take_ints(pool, strip->count);
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
     for (i = 0, g = first; i < strip->count; ++i, g = s->next[s->next[g]] ^ 1) {
         if (g == h) strip->given = i;
@@ -16499,9 +16492,9 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
-    dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
-    dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
+    dual.vertex = gproji_take_ints(&pool, vertices);
+    dual.midpoint = gproji_take_ints(&pool, edges);
+    dual.seen = gproji_take_ints(&pool, faces);
     code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
                              mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
                ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
@@ -16546,20 +16539,6 @@ GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
     }
 }
 
-/* Finds the unit eigenvector for the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
-GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
-    int32_t sweep, largest = 0, k;
-    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
-        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
-        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
-        gproji_jacobi_sweep(m, v);
-    }
-    for (k = 1; k < 3; ++k)
-        if (m[k][k] > m[largest][largest]) largest = k;
-    for (k = 0; k < 3; ++k) out[k] = v[k][largest];
-}
-
 GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
     return mesh->position + 3 * (size_t)mesh->origin[halfedge];
 }
@@ -16573,10 +16552,10 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
    scatter least. */
 GPROJI_INTERNAL void gproji_fit_plane(const double *position, int32_t count, const int32_t *vertex, const int32_t *next,
                                       int32_t first, double mean[3], double normal[3], double *across) {
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    static const double tiny = 1e-100, most = 1e300;
-    double extent = 0, unit, du, dv;
-    int32_t h, k, i, j;
+    static const double tiny = 1e-100, most = 1e300, rounding = DBL_EPSILON * DBL_EPSILON;
+    double m[3][3] = {{0}}, axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, d[3], along[3], u[3], v[3];
+    double extent = 0, unit, du, dv, uu = 0, uv = 0, vv = 0, angle;
+    int32_t h, k, i, j, sweep, longest = 0;
     gproji_set3(0, 0, 0, mean);
     for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1)
         gproji_add_scaled3(1.0 / count, position + 3 * (size_t)vertex[h], mean);
@@ -16592,9 +16571,16 @@ GPROJI_INTERNAL void gproji_fit_plane(const double *position, int32_t count, con
         gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         for (i = 0; i < 3; ++i) d[i] *= unit;
         for (i = 0; i < 3; ++i)
-            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
+            for (j = 0; j < 3; ++j) m[i][j] += d[i] * d[j];
     }
-    gproji_largest_eigenvector3(scatter, along);
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
+        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
+        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
+        gproji_jacobi_sweep(m, axes);
+    }
+    for (k = 1; k < 3; ++k)
+        if (m[k][k] > m[longest][longest]) longest = k;
+    gproji_set3(axes[0][longest], axes[1][longest], axes[2][longest], along);
     gproji_tangents3(along, u, v);
     for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1) {
         gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
@@ -17331,7 +17317,7 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 2, /* in each stage: the recurrences' rounding ends with them */
+    GPROJI_PARALLEL_ROUNDS = 2, /* in each stage: a restart ends the rounding of the recurrences */
     GPROJI_PARALLEL_STEPS = 1000
 };
 
@@ -19384,6 +19370,16 @@ GPROJI_INLINE void gproji_set_point(gproj_term *term, int32_t first) {
     for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + k, -1, 0);
 }
 
+/* Sets 3 count terms for the sum over scale a p_i'p_j, a product {i, j, a} each; point p_i has the variables from
+   first[i] on. */
+GPROJI_INTERNAL void gproji_set_products(gproj_term *term, int32_t count, const gproj_term *product,
+                                         const int32_t *first, double scale) {
+    int32_t k, p;
+    for (k = 0; k < 3; ++k)
+        for (p = 0; p < count; ++p)
+            gproji_set_term(term++, first[product[p].i] + k, first[product[p].j] + k, scale * product[p].a);
+}
+
 /* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
 GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
                                          size_t locals) {
@@ -20173,12 +20169,9 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
-    int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
-    for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[3 * k], i + k, i + k, scale);
-        gproji_set_term(&term[3 * k + 1], j + k, j + k, scale);
-        gproji_set_term(&term[3 * k + 2], i + k, j + k, -2 * scale);
-    }
+    static const gproj_term square[3] = {{0, 0, 1}, {1, 1, 1}, {0, 1, -2}};
+    const int32_t end[2] = {3 * mesh->origin[2 * edge], 3 * mesh->origin[2 * edge + 1]};
+    gproji_set_products(term, 3, square, end, scale);
 }
 
 static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
@@ -20278,12 +20271,14 @@ static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, 
 static const gproji_rule gproji_midsphere_rule = {"midsphere",     GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_midsphere_acts};
 
+/* (m'm - 2 c'm + s) / (2 R) = 0 for midpoints m = (v_i + v_j) / 2: products of v_i, v_j, c, and a term in s. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    static const gproj_term product[5] = {{0, 0, 0.25}, {1, 1, 0.25}, {0, 1, 0.5}, {0, 2, -1}, {1, 2, -1}};
     gproji_part *part = gproji_new_list_part(form, &gproji_midsphere_rule, count, edges);
     const int32_t *first = gproji_part_unknowns(part, 4);
     const double *sphere;
     double half;
-    int32_t k, c;
+    int32_t k;
     if (!first) return -1;
     gproji_start_midsphere(part);
     sphere = gproj_system_values(form->system) + *first;
@@ -20291,15 +20286,9 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         const int32_t *end = form->mesh->origin + 2 * (size_t)part->vertex[k];
+        const int32_t point[3] = {3 * end[0], 3 * end[1], *first};
         gproj_term term[16];
-        for (c = 0; c < 3; ++c) {
-            int32_t i = 3 * end[0] + c, j = 3 * end[1] + c;
-            gproji_set_term(&term[5 * c], i, i, half / 4);
-            gproji_set_term(&term[5 * c + 1], j, j, half / 4);
-            gproji_set_term(&term[5 * c + 2], i, j, half / 2);
-            gproji_set_term(&term[5 * c + 3], i, *first + c, -half);
-            gproji_set_term(&term[5 * c + 4], j, *first + c, -half);
-        }
+        gproji_set_products(term, 5, product, point, half);
         gproji_set_term(&term[15], *first + 3, -1, half);
         gproj_system_add_row(form->system, part->group, 16, term, 0, part->vertex[k]);
     }
@@ -20490,20 +20479,17 @@ static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary
                                                             GPROJI_OWN_NONE,       GPROJI_ORDINARY,  NULL};
 
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
-   and v_1. */
+   and v_1: products of v, v_2, v_b, v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
-    int32_t group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight), v, k, ring[3];
+    static const gproj_term product[4] = {{2, 3, 0.5}, {2, 1, -0.5}, {0, 3, -0.5}, {0, 1, 0.5}};
+    int32_t group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight), v, k, ring[3], point[4];
     if (group < 0) return -1;
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
         gproj_term term[12];
         /* A boundary vertex's ring begins and ends along the boundary. */
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
-        for (k = 0; k < 3; ++k) {
-            gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
-            gproji_set_term(&term[4 * k + 1], 3 * ring[1] + k, 3 * ring[0] + k, -0.5);
-            gproji_set_term(&term[4 * k + 2], 3 * v + k, 3 * ring[2] + k, -0.5);
-            gproji_set_term(&term[4 * k + 3], 3 * v + k, 3 * ring[0] + k, 0.5);
-        }
+        for (point[0] = 3 * v, k = 0; k < 3; ++k) point[k + 1] = 3 * ring[k];
+        gproji_set_products(term, 4, product, point, 1);
         gproj_system_add_row(form->system, group, 12, term, 0, v);
     }
     return gproji_built(form, group);
@@ -20578,9 +20564,10 @@ static const gproji_rule gproji_circularity_rule = {"circularity",   GPROJ_CONST
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
+    static const gproj_term product[4] = {{2, 2, 0.5}, {1, 1, -0.5}, {0, 2, -1}, {0, 1, 1}}; /* of c, v_i, v_j */
     const gproj_mesh *mesh;
     gproji_part *part;
-    int32_t f, k, c, h;
+    int32_t f, k, h, point[3];
     if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
     mesh = form->mesh;
     part = gproji_open_part(form, &gproji_circularity_rule, mesh->face_count, weight);
@@ -20591,14 +20578,9 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
         part->vertex[part->count++] = f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
-            int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
             gproj_term term[12];
-            for (c = 0; c < 3; ++c) {
-                gproji_set_term(&term[4 * c], j + c, j + c, 0.5);
-                gproji_set_term(&term[4 * c + 1], i + c, i + c, -0.5);
-                gproji_set_term(&term[4 * c + 2], form->axis[f] + c, j + c, -1);
-                gproji_set_term(&term[4 * c + 3], form->axis[f] + c, i + c, 1);
-            }
+            point[0] = form->axis[f], point[1] = 3 * mesh->origin[h], point[2] = 3 * mesh->origin[mesh->next[h]];
+            gproji_set_products(term, 4, product, point, 1);
             gproj_system_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
