@@ -15954,8 +15954,8 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
                            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex "
                            "%d, and the mesh would be pinched there",
                            h / 2, a, b);
-    /* 3. The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
-       only be those at triangles on the edge and at its faces. */
+    /* 3. The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b,
+       may only be those at triangles on the edge and at the faces there. */
     if (object->stamp == INT32_MAX) {
         gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
         gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
