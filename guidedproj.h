@@ -18896,7 +18896,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
 
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
-    static const int32_t valence[3] = {5, 6, INT32_MAX};
+    static const int32_t most[3] = {5, 6, INT32_MAX};
     gproji_mesh_object *object;
     gproji_filling f;
     gproj_fill_info found;
@@ -18923,7 +18923,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     for (tries = 0; !code && !good && tries < 3 * GPROJI_FILL_TRIES; ++tries) {
         if (variant >= INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
         f.options.variant = variant + tries % GPROJI_FILL_TRIES;
-        code = gproji_try_filling(&f, valence[tries / GPROJI_FILL_TRIES], &good);
+        code = gproji_try_filling(&f, most[tries / GPROJI_FILL_TRIES], &good);
     }
     if (!code && !good)
         code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
