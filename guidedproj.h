@@ -12425,6 +12425,8 @@ GPROJI_INTERNAL uint64_t gproji_hash_group(uint64_t hash, const gproji_group *g)
 /* Largest coordinate that is accepted: squared areas must not overflow. */
 #define GPROJI_COORDINATE_MAX 1e70
 
+static const double gproji_zero[3] = {0, 0, 0}, gproji_up[3] = {0, 0, 1};
+
 /* Owns a gproj_mesh and the arrays that it shows read-only. */
 typedef struct gproji_mesh_object {
     gproji_heap heap; /* first: see gproji_create_object */
@@ -12462,10 +12464,10 @@ GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, i
                                        int64_t corners, int64_t polylines, int64_t polyline_vertices) {
     memset(draft, 0, sizeof *draft);
     draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
-    draft->soup.face_degree = draft->degree = (int32_t *)gproji_pool_take(pool, faces, sizeof(int32_t));
-    draft->soup.face_vertex = draft->corner = (int32_t *)gproji_pool_take(pool, corners, sizeof(int32_t));
-    draft->soup.polyline_start = draft->start = (int32_t *)gproji_pool_take(pool, polylines + 1, sizeof(int32_t));
-    draft->soup.polyline_vertex = draft->vertex = (int32_t *)gproji_pool_take(pool, polyline_vertices, sizeof(int32_t));
+    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
+    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
+    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
+    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
     if (draft->start) draft->start[0] = 0;
     return !pool->failed;
 }
@@ -12484,6 +12486,12 @@ typedef struct gproji_mesh_work {
     int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
 
+/* -1, which functions that return a number return after an error. */
+GPROJI_INLINE int32_t gproji_none(gproj_code code) {
+    (void)code;
+    return -1;
+}
+
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
     for (i = 0; i < count; ++i) array[i] = value;
@@ -12499,15 +12507,13 @@ GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *p
         for (k = 0; k < 3; ++k) {
             double x = position[3 * i + k];
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
-            if (!gproji_is_finite(x)) {
+            if (!gproji_is_finite(x))
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                                    "coordinate %s of %s %d is %g; give it a finite value", axis, noun, i, x);
-            }
-            if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX) {
+            if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX)
                 return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
                                    "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, noun,
                                    i, x);
-            }
         }
     }
     return GPROJ_OK;
@@ -12527,17 +12533,14 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
     int32_t *slot = work->slot, *mark = work->mark;
     /* 1. Sort the corners by the smaller vertex of their edge; equal ones keep their order. */
     gproji_fill(slot, soup->vertex_count + 1, 0);
-    for (c = 0; c < soup->corner_count; ++c) {
-        slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
-    }
+    for (c = 0; c < soup->corner_count; ++c) slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++;
     for (v = 0; v <= soup->vertex_count; ++v) {
         int32_t corners = slot[v];
         slot[v] = sum;
         sum += corners;
     }
-    for (c = 0; c < soup->corner_count; ++c) {
+    for (c = 0; c < soup->corner_count; ++c)
         work->corner_order[slot[gproji_min(work->corner_vertex[c], gproji_corner_head(work, c))]++] = c;
-    }
     /* 2. corner_edge[c] = the first corner with the same two vertices. slot[b] is that corner for the edge a-b while
        the loop passes smaller vertex a, which mark[b] = a says. */
     gproji_fill(mark, soup->vertex_count, -1);
@@ -12575,11 +12578,11 @@ GPROJI_INTERNAL gproj_code gproji_mesh_match(const gproji_soup *soup, gproji_mes
         if (count < 3) faces[count] = work->corner_face[c];
         ++count;
     }
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
-        "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are left",
-        gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and", faces[2],
-        count > 3 ? ", ..." : "");
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, faces[2],
+                       "edge %d-%d has %d faces (%d, %d%s %d%s); split the mesh there or remove faces until two are "
+                       "left",
+                       gproji_min(a, b), gproji_max(a, b), count, faces[0], faces[1], count > 3 ? "," : " and",
+                       faces[2], count > 3 ? ", ..." : "");
 }
 
 /* Makes all faces in a component agree with the first one. Turned faces change the order of the corners, so the edges
@@ -12663,11 +12666,10 @@ GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32
 GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
 
 GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
-    return gproji_fail(
-        error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
-        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a vertex "
-        "of its own",
-        vertex);
+    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
+                       "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a "
+                       "vertex of its own",
+                       vertex);
 }
 
 /* Fills the half-edges from matched and oriented corners; refuses vertices with more than one fan. */
@@ -12746,16 +12748,14 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
         work->face_start[f] = c;
         for (k = 0; k < soup->face_degree[f]; ++k, ++c) {
             int32_t v = soup->face_vertex[c];
-            if (v < 0 || v >= soup->vertex_count) {
+            if (v < 0 || v >= soup->vertex_count)
                 return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, f,
                                    "face %d names vertex %d, but the vertices are 0 to %d", f, v,
                                    soup->vertex_count - 1);
-            }
-            if (work->mark[v] == f) {
+            if (work->mark[v] == f)
                 return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
                                    "face %d names vertex %d twice; name each corner once, or split the face there", f,
                                    v);
-            }
             work->mark[v] = f;
             work->corner_vertex[c] = v;
             work->corner_face[c] = f;
@@ -12771,7 +12771,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     if (code) return code;
     mesh->halfedge_count = 2 * mesh->edge_count;
     mesh->position = (double *)gproji_pool_copy(pool, soup->position, soup->vertex_count, 3 * sizeof(double));
-    object->links = (int32_t *)gproji_pool_take(pool, gproji_mesh_links(mesh), sizeof(int32_t));
+    object->links = gproji_take_ints(pool, gproji_mesh_links(mesh));
     if (pool->failed) return gproji_fail_memory(error);
     gproji_mesh_show(object);
     code = gproji_mesh_link(object, work, error);
@@ -12798,16 +12798,14 @@ GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t face_count, const int32_
     int32_t f;
     *corners = 0;
     for (f = 0; f < face_count; ++f) {
-        if (face_degree[f] < 3) {
+        if (face_degree[f] < 3)
             return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
                                "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
-        }
         *corners += face_degree[f];
-        if (*corners > GPROJI_CORNERS_MAX) {
+        if (*corners > GPROJI_CORNERS_MAX)
             return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
                                "the faces up to face %d have more than %d corners; split the mesh", f,
                                (int32_t)GPROJI_CORNERS_MAX);
-        }
     }
     return GPROJ_OK;
 }
@@ -12818,11 +12816,10 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    if (soup->vertex_count > GPROJI_VERTICES_MAX) {
+    if (soup->vertex_count > GPROJI_VERTICES_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
-    }
     code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
     if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
@@ -12831,16 +12828,16 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     object->mesh.vertex_count = soup->vertex_count;
     object->mesh.face_count = soup->face_count;
     gproji_pool_start(&pool, &object->heap);
-    work.corner_vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_face = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_next = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_edge = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.corner_order = (int32_t *)gproji_pool_take(&pool, corners, sizeof(int32_t));
-    work.edge_corner = (int32_t *)gproji_pool_take(&pool, 2 * corners, sizeof(int32_t));
-    work.face_start = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->face_count + 1, sizeof(int32_t));
-    work.face_state = (int32_t *)gproji_pool_take(&pool, soup->face_count, sizeof(int32_t));
-    work.mark = (int32_t *)gproji_pool_take(&pool, soup->vertex_count, sizeof(int32_t));
-    work.slot = (int32_t *)gproji_pool_take(&pool, (int64_t)soup->vertex_count + 1, sizeof(int32_t));
+    work.corner_vertex = gproji_take_ints(&pool, corners);
+    work.corner_face = gproji_take_ints(&pool, corners);
+    work.corner_next = gproji_take_ints(&pool, corners);
+    work.corner_edge = gproji_take_ints(&pool, corners);
+    work.corner_order = gproji_take_ints(&pool, corners);
+    work.edge_corner = gproji_take_ints(&pool, 2 * corners);
+    work.face_start = gproji_take_ints(&pool, (int64_t)soup->face_count + 1);
+    work.face_state = gproji_take_ints(&pool, soup->face_count);
+    work.mark = gproji_take_ints(&pool, soup->vertex_count);
+    work.slot = gproji_take_ints(&pool, (int64_t)soup->vertex_count + 1);
     code = pool.failed ? gproji_fail_memory(error) : gproji_mesh_connect(object, soup, &work, error);
     gproji_pool_give_all(&pool);
     return code;
@@ -12869,8 +12866,8 @@ GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
 
 GPROJI_INTERNAL gproj_code gproji_check_counts(int32_t vertex_count, int32_t face_count, gproj_error *error) {
     if (vertex_count >= 1 && face_count >= 0) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                       "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count, face_count);
+    return gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
+                         face_count);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
@@ -13006,11 +13003,10 @@ GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t 
 /* True if a polyline turns by more than 45 degrees at a point between two neighbours; false if one of them is the same
    point. */
 GPROJI_INTERNAL bool gproji_turns(const double before[3], const double at[3], const double after[3]) {
-    static const double none[3] = {0, 0, 0};
     double in[3], out[3];
     gproji_sub3(at, before, in);
     gproji_sub3(after, at, out);
-    if (!gproji_normalise3(in, none) || !gproji_normalise3(out, none)) return false;
+    if (!gproji_normalise3(in, gproji_zero) || !gproji_normalise3(out, gproji_zero)) return false;
     return gproji_dot3(in, out) < 0.70710678118654752; /* cos 45 degrees */
 }
 
@@ -13166,18 +13162,16 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return true;
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return close(file->descriptor) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fsync(file->descriptor) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || fsync(file->descriptor) == 0;
+    return close(file->descriptor) == 0 && flushed;
+}
 
 /* Renames a file; the disk keeps the new name when its folder is flushed, which some file systems refuse. */
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     gproji_file names;
     if (rename(from, to) != 0) return false;
-    if (gproji_file_open(&names, folder)) {
-        gproji_file_flush(&names);
-        gproji_file_close(&names);
-    }
+    if (gproji_file_open(&names, folder)) gproji_file_close(&names, true);
     return true;
 }
 
@@ -13275,9 +13269,10 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return _write(file->descriptor, text, (unsigned int)size) == (int)size; /* a piece of a writer's buffer */
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return _close(file->descriptor) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return _commit(file->descriptor) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || _commit(file->descriptor) == 0;
+    return _close(file->descriptor) == 0 && flushed;
+}
 
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     const unsigned long replace_existing = 1, write_through = 8;
@@ -13336,9 +13331,10 @@ GPROJI_INTERNAL bool gproji_file_write(void *user, const char *text, size_t size
     return fwrite(text, 1, size, ((gproji_file *)user)->stream) == size;
 }
 
-GPROJI_INTERNAL bool gproji_file_close(gproji_file *file) { return fclose(file->stream) == 0; }
-
-GPROJI_INTERNAL bool gproji_file_flush(gproji_file *file) { return fflush(file->stream) == 0; }
+GPROJI_INTERNAL bool gproji_file_close(gproji_file *file, bool flush) {
+    bool flushed = !flush || fflush(file->stream) == 0;
+    return fclose(file->stream) == 0 && flushed;
+}
 
 GPROJI_INTERNAL bool gproji_file_rename(const char *from, const char *to, const char *folder) {
     (void)folder;
@@ -13392,8 +13388,7 @@ GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char 
 /* Puts the new file in its place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
 GPROJI_INTERNAL const char *gproji_save_end(gproji_saving *saving, bool written) {
     char folder[GPROJI_PATH_MAX];
-    bool complete = written && gproji_file_flush(&saving->file);
-    if (!gproji_file_close(&saving->file)) complete = false;
+    bool complete = gproji_file_close(&saving->file, written) && written;
     if (complete) {
         memcpy(folder, saving->target, saving->folder_length);
         memcpy(folder + saving->folder_length, ".", 2);
@@ -13472,9 +13467,8 @@ GPROJI_INTERNAL bool gproji_next_word(gproji_reader *reader) {
             break;
         }
     }
-    if (reader->at >= reader->size || gproji_is_line_end(reader->text[reader->at]) || reader->text[reader->at] == '#') {
+    if (reader->at >= reader->size || gproji_is_line_end(reader->text[reader->at]) || reader->text[reader->at] == '#')
         return false;
-    }
     for (end = reader->at; end < reader->size; ++end) {
         char c = reader->text[end];
         if (gproji_is_blank(c) || gproji_is_line_end(c) || gproji_is_continuation(reader, end)) break;
@@ -13495,9 +13489,8 @@ GPROJI_INTERNAL bool gproji_next_line(gproji_reader *reader) {
 
 /* Scans the next word, over line ends and comments; false at the end of the text. */
 GPROJI_INTERNAL bool gproji_next_word_anywhere(gproji_reader *reader) {
-    while (!gproji_next_word(reader)) {
+    while (!gproji_next_word(reader))
         if (!gproji_next_line(reader)) return false;
-    }
     return true;
 }
 
@@ -13539,9 +13532,8 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
     char quote[GPROJI_QUOTE_SIZE];
     size_t i = word[0] == '-' || word[0] == '+', digits = i;
     int64_t value = 0;
-    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i) {
+    for (; i < reader->word_size && gproji_is_digit(word[i]); ++i)
         if (value < INT64_C(100000000000)) value = value * 10 + (word[i] - '0');
-    }
     if (i > digits && slashes && i < reader->word_size && word[i] == '/') {
         while (i < reader->word_size && (gproji_is_digit(word[i]) || word[i] == '/' || word[i] == '-')) ++i;
     }
@@ -13682,30 +13674,9 @@ GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64
     return !reader->code;
 }
 
-/* Reads face number `face` from the word with the degree on; colours behind the corners are passed over. */
-GPROJI_INTERNAL void gproji_off_face(gproji_reader *reader, int64_t face, int64_t faces) {
-    int64_t degree = gproji_word_index(reader, false), index, k, vertices = (int64_t)reader->vertex_count;
-    gproji_push_face(reader, degree, reader->line);
-    for (k = 0; k < degree && gproji_off_word(reader, face, faces, "faces"); ++k) {
-        index = gproji_word_index(reader, false);
-        if (!reader->code && (index < 0 || index >= vertices)) {
-            /* a common mistake is to count from 1: one index is too large by one, and none so far was 0 */
-            bool from_one = index == vertices;
-            size_t c;
-            for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
-            gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
-                        vertices - 1,
-                        from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each index"
-                                 : "");
-        }
-        gproji_push(reader, &reader->face_vertex, (int32_t)index);
-    }
-    gproji_next_line(reader);
-}
-
 GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
-    int64_t count[2] = {0, 0}, i;
+    int64_t count[2] = {0, 0}, i, j, degree, index, vertices;
     bool plain, have_word = gproji_next_word_anywhere(reader);
     int32_t k;
     /* 1. The word OFF, which may be missing if the counts are there. */
@@ -13738,9 +13709,28 @@ GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
         gproji_next_line(reader);
         gproji_push_vertex(reader, x, line);
     }
-    /* 4. Faces: the degree, then the corners. */
-    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i)
-        gproji_off_face(reader, i, count[1]);
+    /* 4. Faces: the degree, the corners, then maybe colours. */
+    vertices = (int64_t)reader->vertex_count;
+    for (i = 0; i < count[1] && gproji_off_word(reader, i, count[1], "faces"); ++i) {
+        degree = gproji_word_index(reader, false);
+        gproji_push_face(reader, degree, reader->line);
+        for (j = 0; j < degree && gproji_off_word(reader, i, count[1], "faces"); ++j) {
+            index = gproji_word_index(reader, false);
+            if (!reader->code && (index < 0 || index >= vertices)) {
+                /* A common mistake is to count from 1: one index is too large by one, and none so far was 0. */
+                bool from_one = index == vertices;
+                size_t c;
+                for (c = 0; c < reader->face_vertex.count; ++c) from_one = from_one && reader->face_vertex.data[c] != 0;
+                gproji_stop(reader, GPROJ_ERROR_INDEX, reader->line, "index %l, but the vertices are 0 to %l%s", index,
+                            vertices - 1,
+                            from_one ? "; they seem to be counted from 1, and OFF counts from 0: subtract 1 from each "
+                                       "index"
+                                     : "");
+            }
+            gproji_push(reader, &reader->face_vertex, (int32_t)index);
+        }
+        gproji_next_line(reader);
+    }
 }
 
 /* -- reading -- */
@@ -13778,10 +13768,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     gproji_soup soup;
     gproj_error *error = reader->error;
     gproj_code code;
-    if (!reader->size) {
+    if (!reader->size)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text is empty; it needs at least one vertex");
-    }
     /* 1. No text has a zero byte; count the lines up to it. */
     zero = (const char *)memchr(reader->text, 0, reader->size);
     if (zero) {
@@ -13809,10 +13798,9 @@ GPROJI_INTERNAL gproj_code gproji_read_text(gproji_reader *reader, gproj_format 
     else
         gproji_read_obj(reader);
     if (reader->code) return reader->code;
-    if (!reader->vertex_count) {
+    if (!reader->vertex_count)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "the text has no vertex; is it an OBJ or OFF text?");
-    }
     /* 3. The mesh. The builder's sentence about a vertex or face gets "line 203: " in front. */
     soup.vertex_count = (int32_t)reader->vertex_count, soup.position = reader->position;
     soup.face_count = (int32_t)reader->face_degree.count, soup.corner_count = 0;
@@ -13882,9 +13870,8 @@ typedef struct gproji_writer {
 } gproji_writer;
 
 GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
-    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length)) {
+    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length))
         writer->failed = true;
-    }
     writer->length = 0;
 }
 
@@ -13906,18 +13893,13 @@ GPROJI_INTERNAL void gproji_put_integer(gproji_writer *writer, int32_t value) {
 GPROJI_INTERNAL gproj_code gproji_write_mesh(const gproj_mesh *mesh, gproj_format format, gproj_write write,
                                              void *user) {
     gproji_writer writer;
-    char number[GPROJ_NUMBER_SIZE];
+    char number[GPROJ_NUMBER_SIZE], head[64];
     bool off = format == GPROJ_FORMAT_OFF;
     int32_t v, f, p, h, i, k;
     writer.write = write, writer.user = user, writer.failed = false, writer.length = 0;
     if (off) {
-        gproji_put(&writer, "OFF\n");
-        gproji_put_integer(&writer, mesh->vertex_count);
-        gproji_put(&writer, " ");
-        gproji_put_integer(&writer, mesh->face_count);
-        gproji_put(&writer, " ");
-        gproji_put_integer(&writer, mesh->edge_count);
-        gproji_put(&writer, "\n");
+        gproji_format(head, sizeof head, "OFF\n%d %d %d\n", mesh->vertex_count, mesh->face_count, mesh->edge_count);
+        gproji_put(&writer, head);
     }
     for (v = 0; v < mesh->vertex_count && !writer.failed; ++v) {
         if (!off) gproji_put(&writer, "v ");
@@ -13957,9 +13939,9 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
     gproj_code code;
     gproji_error_clear(error);
     if (!mesh || !write || (format != GPROJ_FORMAT_OBJ && format != GPROJ_FORMAT_OFF))
-        return gproji_fail(
-            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-            "write: there is no mesh or no function to write with, or the format is neither OBJ nor OFF");
+        return gproji_refuse(error,
+                             "write: there is no mesh or no function to write with, or the format is neither OBJ nor "
+                             "OFF");
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
@@ -14010,26 +13992,22 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
     size_t most = heap->hook.limit > GPROJI_TEXT_MAX ? heap->hook.limit : GPROJI_TEXT_MAX;
     int64_t got;
     for (;;) {
-        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1)) {
+        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1))
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
-        }
         got = gproji_file_read(file, (char *)*text + *size, *capacity - *size);
-        if (got < 0) {
+        if (got < 0)
             return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1,
                                "'%s' cannot be read; is it a folder, or the disk damaged?",
                                gproji_quote_path(path, quote));
-        }
         *size += (size_t)got;
         if (got == 0 || memchr((char *)*text + *size - got, 0, (size_t)got)) return GPROJ_OK;
-        if (*size > most) {
-            return gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets more "
-                "be read",
-                gproji_quote_path(path, quote), (int64_t)most);
-        }
+        if (*size > most)
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "'%s' has more than %l bytes, or no end; a larger limit of the host's allocator lets "
+                               "more be read",
+                               gproji_quote_path(path, quote), (int64_t)most);
     }
 }
 
@@ -14050,7 +14028,7 @@ GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, 
         return gproji_mesh_done(object, code);
     }
     code = gproji_read_file(&file, path, &object->heap, &text, &capacity, &size, error);
-    gproji_file_close(&file);
+    gproji_file_close(&file, false);
     if (!code) code = gproji_mesh_read_into(object, (const char *)text, size, gproji_format_of_path(path), error);
     gproji_give(&object->heap, text, capacity, 1);
     return gproji_mesh_done(object, code);
@@ -14062,13 +14040,10 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     const char *problem;
     gproj_code code;
     gproji_error_clear(error);
-    if (!mesh || !path) {
-        return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
-    }
-    if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT) {
+    if (!mesh || !path) return gproji_refuse(error, "the %s to save is NULL", mesh ? "path" : "mesh");
+    if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT)
         return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
                              gproji_quote_path(path, quote));
-    }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
     problem = gproji_save_begin(&saving, path);
@@ -14457,9 +14432,10 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
         return NULL;
     }
     if (fine->column_count != coarse->row_count) {
-        gproji_refuse(
-            error, "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one first",
-            fine->column_count, coarse->row_count);
+        gproji_refuse(error,
+                      "the fine stencil starts from %d vertices, but the coarse one leads to %d; give the fine one "
+                      "first",
+                      fine->column_count, coarse->row_count);
         return NULL;
     }
     gproji_rows_begin(&rows, fine->row_count, coarse->column_count, host);
@@ -14485,85 +14461,69 @@ GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *op
     return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_creases(const gproj_mesh *mesh, const gproj_subdivide_options *options,
-                                                gproj_error *error) {
-    int32_t k;
-    if (options->crease_count < 0 || options->corner_count < 0) {
-        return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
-                             options->corner_count);
-    }
-    for (k = 0; k < options->crease_count; ++k) {
-        int32_t e = options->creases ? options->creases[k] : k;
-        if (e < 0 || e >= mesh->edge_count) {
-            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
-                               "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
-                               mesh->edge_count);
-        }
-        if (gproji_crease_sharpness(options, k) < 0) {
-            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                               "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
-                               options->sharpness[k]);
-        }
-    }
-    for (k = 0; k < options->corner_count; ++k) {
-        int32_t v = options->corners ? options->corners[k] : k;
-        if (v >= 0 && v < mesh->vertex_count) continue;
-        return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
-                           "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
-                           mesh->vertex_count);
-    }
-    return GPROJ_OK;
-}
-
 GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                     gproj_error *error) {
     bool loop = options->scheme == GPROJ_LOOP;
-    int32_t level, f;
+    int32_t level, f, k;
     gproj_code code;
-    if (options->scheme != GPROJ_CATMULL_CLARK && !loop) {
+    /* 1. The scheme, the levels, and positions. */
+    if (options->scheme != GPROJ_CATMULL_CLARK && !loop)
         return gproji_refuse(error, "subdivide: there is no scheme %d", (int32_t)options->scheme);
-    }
-    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX) {
+    if (options->levels < 1 || options->levels > GPROJI_LEVELS_MAX)
         return gproji_refuse(error, "subdivide: %d levels; take 1 to %d (0 means 1)", options->levels,
                              (int32_t)GPROJI_LEVELS_MAX);
-    }
-    if (options->stencil_level < 0 || options->stencil_level >= options->levels) {
+    if (options->stencil_level < 0 || options->stencil_level >= options->levels)
         return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
                              options->stencil_level, options->levels, options->levels - 1);
-    }
     code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
     if (code) return code;
-    /* Two triangles with the same corners have three edges in common, and so would their fine faces in the middle. */
+    /* 2. Loop's triangles: two with the same corners would have fine faces in the middle with three common edges. */
     for (f = 0; loop && f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], other = mesh->face[h ^ 1];
-        if (mesh->face_degree[f] != 3) {
-            return gproji_fail(
-                error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
-                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use Catmull-Clark, "
-                "or cut the faces into triangles",
-                f, mesh->face_degree[f]);
-        }
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]]) {
-            return gproji_fail(
-                error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
-                "subdivide: faces %d and %d have the same three corners, and their finer faces would share "
-                "edges; use Catmull-Clark, or remove them",
-                f, other);
-        }
+        if (mesh->face_degree[f] != 3)
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, f,
+                               "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use "
+                               "Catmull-Clark, or cut the faces into triangles",
+                               f, mesh->face_degree[f]);
+        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
+                               "subdivide: faces %d and %d have the same three corners, and their finer faces would "
+                               "share edges; use Catmull-Clark, or remove them",
+                               f, other);
     }
-    code = gproji_check_creases(mesh, options, error);
-    for (level = 1; !code && level <= options->levels; ++level) {
+    /* 3. Creases and corners. */
+    if (options->crease_count < 0 || options->corner_count < 0)
+        return gproji_refuse(error, "subdivide: %d creases and %d corners", options->crease_count,
+                             options->corner_count);
+    for (k = 0; k < options->crease_count; ++k) {
+        int32_t e = options->creases ? options->creases[k] : k;
+        if (e < 0 || e >= mesh->edge_count)
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, e,
+                               "subdivide: crease %d is edge %d, but the mesh has %d edges, counted from 0", k, e,
+                               mesh->edge_count);
+        if (gproji_crease_sharpness(options, k) < 0)
+            return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "subdivide: the sharpness of edge %d is %g; give 0 (smooth) to INFINITY (sharp)", e,
+                               options->sharpness[k]);
+    }
+    for (k = 0; k < options->corner_count; ++k) {
+        int32_t v = options->corners ? options->corners[k] : k;
+        if (v < 0 || v >= mesh->vertex_count)
+            return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, v,
+                               "subdivide: corner %d is vertex %d, but the mesh has %d vertices, counted from 0", k, v,
+                               mesh->vertex_count);
+    }
+    /* 4. The size of each level. */
+    for (level = 1; level <= options->levels; ++level) {
         gproji_counts counts = gproji_count_levels(mesh, options->scheme, level);
         if (counts.vertices > GPROJI_VERTICES_MAX || counts.corners > GPROJI_CORNERS_MAX ||
-            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX) {
-            code = gproji_fail(
-                error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more than a mesh "
-                "can have; take fewer levels",
-                level, counts.vertices, counts.faces, counts.polyline_vertices);
-        }
+            counts.polyline_vertices > GPROJI_POLYLINE_VERTICES_MAX)
+            return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                               "subdivide: level %d would have %l vertices, %l faces and up to %l in polylines, more "
+                               "than a mesh can have; take fewer levels",
+                               level, counts.vertices, counts.faces, counts.polyline_vertices);
     }
-    return code;
+    return GPROJ_OK;
 }
 
 /* -- all levels -- */
@@ -14759,9 +14719,8 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
         if (end - begin > GPROJI_LEAF_ITEMS) {
             middle = begin + (end - begin) / 2;
             for (i = begin; i < end; ++i) work->left[work->order[widest][i]] = i < middle;
-            for (axis = 0; axis < 3; ++axis) {
+            for (axis = 0; axis < 3; ++axis)
                 if (axis != widest) gproji_split_list(work, work->order[axis], begin, end);
-            }
             stack_begin[depth] = middle, stack_end[depth] = end, stack_parent[depth] = tree->node_count - 1;
             ++depth;
             end = middle, parent = -1;
@@ -14782,13 +14741,13 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy 
     int32_t i, axis;
     bool complete;
     tree->item_count = count, tree->node_count = 0;
-    tree->item = (int32_t *)gproji_pool_take(keep, count, sizeof(int32_t));
+    tree->item = gproji_take_ints(keep, count);
     tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
     gproji_pool_start(&pool, keep->heap);
     work.box = (double *)gproji_pool_take(&pool, count, 6 * sizeof(double));
-    work.spare = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    work.spare = gproji_take_ints(&pool, count);
     work.left = (uint8_t *)gproji_pool_take(&pool, count, sizeof(uint8_t));
-    for (axis = 0; axis < 3; ++axis) work.order[axis] = (int32_t *)gproji_pool_take(&pool, count, sizeof(int32_t));
+    for (axis = 0; axis < 3; ++axis) work.order[axis] = gproji_take_ints(&pool, count);
     complete = !keep->failed && !pool.failed;
     if (complete) {
         for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
@@ -14932,7 +14891,6 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
 /* Ends every function that makes a curve: checks the points, and finds the tangents and the hierarchy. Returns the
    curve, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
-    const double zero[3] = {0, 0, 0};
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
@@ -14945,7 +14903,7 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
         else
-            gproji_normalise3(t, zero);
+            gproji_normalise3(t, gproji_zero);
         /* before segment 0 comes the last one on a closed curve, else the first with a direction stands in */
         if (gproji_dot3(t, t) > 0 && (closed || from < 0)) from = s;
     }
@@ -15070,26 +15028,20 @@ typedef struct gproji_polygon {
 /* Takes the arrays for faces up to a degree; false without memory. */
 GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *pool, int32_t degree) {
     polygon->xy = (double *)gproji_pool_take(pool, degree, 2 * sizeof(double));
-    polygon->vertex = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    polygon->next = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
-    polygon->prev = (int32_t *)gproji_pool_take(pool, degree, sizeof(int32_t));
+    polygon->vertex = gproji_take_ints(pool, degree);
+    polygon->next = gproji_take_ints(pool, degree);
+    polygon->prev = gproji_take_ints(pool, degree);
     polygon->ear = (int32_t *)gproji_pool_take(pool, degree, 3 * sizeof(int32_t));
     return !pool->failed;
 }
 
-/* Twice the area of the triangle a b c of corners, positive when counter-clockwise. */
-GPROJI_INLINE double gproji_turn(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
-    return gproji_turn2(polygon->xy, a, b, c);
-}
-
 /* Projects a face to the plane; the ring has all corners. */
 GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mesh *mesh, int32_t face) {
-    const double up[3] = {0, 0, 1};
     double n[3], u[3], v[3], d[3], extent = 0;
     const double *first;
     int32_t h = mesh->face_halfedge[face], i;
     gproj_mesh_face_area_vector(mesh, face, n);
-    gproji_normalise3(n, up);
+    gproji_normalise3(n, gproji_up);
     gproji_tangents3(n, u, v);
     first = mesh->position + 3 * (size_t)mesh->origin[h];
     polygon->count = mesh->face_degree[face], polygon->ears = 0;
@@ -15109,13 +15061,13 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
    from the budget. */
 GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
     int32_t a = polygon->prev[b], c = polygon->next[b], i;
-    if (gproji_turn(polygon, a, b, c) <= polygon->tolerance) return false;
+    if (gproji_turn2(polygon->xy, a, b, c) <= polygon->tolerance) return false;
     for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
         --*budget;
         /* if any corner is in the triangle, one that turns right is */
-        if (gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) > 0) continue;
-        if (gproji_turn(polygon, a, b, i) >= 0 && gproji_turn(polygon, b, c, i) >= 0 &&
-            gproji_turn(polygon, c, a, i) >= 0) {
+        if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) > 0) continue;
+        if (gproji_turn2(polygon->xy, a, b, i) >= 0 && gproji_turn2(polygon->xy, b, c, i) >= 0 &&
+            gproji_turn2(polygon->xy, c, a, i) >= 0) {
             return false;
         }
     }
@@ -15163,10 +15115,9 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     gproji_polygon_set(polygon, mesh, face);
     /* 1. Convex faces: each corner turns left, and no triangle in the fan about the first one is turned over. */
     left = polygon->count, least = -polygon->tolerance;
-    for (i = 0; left > 3 && i < left && convex; ++i) {
-        convex = gproji_turn(polygon, polygon->prev[i], i, polygon->next[i]) >= least &&
-                 (i == 0 || i + 1 == left || gproji_turn(polygon, 0, i, i + 1) >= least);
-    }
+    for (i = 0; left > 3 && i < left && convex; ++i)
+        convex = gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) >= least &&
+                 (i == 0 || i + 1 == left || gproji_turn2(polygon->xy, 0, i, i + 1) >= least);
     for (i = 1; convex && i + 1 < left; ++i) gproji_cut(surface, polygon, face, 0, i, i + 1);
     if (convex) return;
     /* 2. Others: ears until three corners are left. */
@@ -15255,34 +15206,12 @@ GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
     gproji_destroy_object(surface, sizeof *surface);
 }
 
-/* Sums face normals, weighted by angles, into vertex normals. */
-GPROJI_INTERNAL void gproji_surface_normals(gproj_surface *surface, const gproj_mesh *mesh) {
-    const double zero[3] = {0, 0, 0};
-    double n[3], a[3], b[3], cross[3];
-    int32_t f, h, v;
-    for (f = 0; f < mesh->face_count; ++f) {
-        gproj_mesh_face_area_vector(mesh, f, n);
-        if (!gproji_normalise3(n, zero)) continue;
-        h = mesh->face_halfedge[f];
-        do {
-            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
-            gproji_cross3(a, b, cross);
-            /* by atan2, an edge without length makes the angle 0 */
-            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
-                               surface->normal + 3 * (size_t)mesh->origin[h]);
-            h = mesh->next[h];
-        } while (h != mesh->face_halfedge[f]);
-    }
-    for (v = 0; v < surface->vertex_count; ++v) gproji_normalise3(surface->normal + 3 * (size_t)v, zero);
-}
-
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
     gproj_surface *surface;
     gproji_polygon polygon;
     gproji_pool pool, *keep;
-    int32_t f, triangles = 0, degree = 0;
+    int32_t f, h, k, v, triangles = 0, degree = 0;
+    double n[3], a[3], b[3], cross[3];
     bool complete;
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
@@ -15300,14 +15229,28 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     surface->position = (double *)gproji_pool_copy(keep, mesh->position, mesh->vertex_count, 3 * sizeof(double));
     surface->normal = (double *)gproji_pool_take_zeroed(keep, mesh->vertex_count, 3 * sizeof(double));
     surface->triangle = (int32_t *)gproji_pool_take(keep, triangles, 3 * sizeof(int32_t));
-    surface->triangle_face = (int32_t *)gproji_pool_take(keep, triangles, sizeof(int32_t));
+    surface->triangle_face = gproji_take_ints(keep, triangles);
     complete = gproji_polygon_take(&polygon, &pool, degree) && !keep->failed;
-    if (complete) gproji_surface_normals(surface, mesh);
+    /* 1. Vertex normals: face normals weighted by angles; by atan2, an edge without length makes the angle 0. */
+    for (f = 0; complete && f < mesh->face_count; ++f) {
+        gproj_mesh_face_area_vector(mesh, f, n);
+        if (!gproji_normalise3(n, gproji_zero)) continue;
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
+            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            gproji_cross3(a, b, cross);
+            gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
+                               surface->normal + 3 * (size_t)mesh->origin[h]);
+        }
+    }
+    for (v = 0; complete && v < mesh->vertex_count; ++v)
+        gproji_normalise3(surface->normal + 3 * (size_t)v, gproji_zero);
+    /* 2. Triangles, and the hierarchy over them. */
     for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
-    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface)) {
+    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface))
         return surface;
-    }
     gproji_fail_memory(error);
     gproj_surface_destroy(surface);
     return NULL;
@@ -15315,7 +15258,6 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
 
 /* Without a surface or a point: face -1 at infinite distance, and zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
-    const double up[3] = {0, 0, 1};
     gproj_surface_hit hit;
     const double *corner[3];
     double weight[3], ab[3], ac[3];
@@ -15337,7 +15279,7 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
         gproji_sub3(corner[2], corner[0], ac);
         gproji_cross3(ab, ac, hit.normal);
     }
-    gproji_normalise3(hit.normal, up);
+    gproji_normalise3(hit.normal, gproji_up);
     return hit;
 }
 
@@ -15568,43 +15510,42 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
 }
 
-/* Is a number in the range for this kind? */
-GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, const char *what,
-                                     gproj_place place, int32_t number, gproj_error *error) {
+/* Is a number in the range for vertices, edges or faces? */
+GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, int32_t number,
+                                     gproj_error *error) {
+    static const gproj_place place[GPROJI_EDIT_NUMBERED] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
+    static const char *const noun[GPROJI_EDIT_NUMBERED] = {"vertex", "edge", "face"};
     int32_t count = object->now.count[kind];
     if (number >= 0 && number < count) return true;
-    gproji_fail(error, GPROJ_ERROR_INDEX, place, number, "%s %d does not exist: they are 0 to %d", what, number,
-                count - 1);
-    return false;
+    return gproji_fail(error, GPROJ_ERROR_INDEX, place[kind], number, "%s %d does not exist: they are 0 to %d",
+                       noun[kind], number, count - 1) == GPROJ_OK;
 }
 
 /* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. -1 without an object. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
-    gproj_code code = GPROJ_OK;
     int32_t root;
-    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, "edge", GPROJ_PLACE_EDGE, edge, error)) return -1;
+    if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, edge, error)) return -1;
     root = gproji_edit_root(object->now.edge_into, edge);
     if (root < 0)
-        code =
-            gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
+        gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, edge, "edge %d is no more: it was collapsed", edge);
     else if (!(t >= 0 && t <= 1))
-        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                           "the parameter %g on edge %d is not from 0 to 1", t, edge);
-    return code ? -1 : 2 * root;
+        root = gproji_none(gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                                       "the parameter %g on edge %d is not from 0 to 1", t, edge));
+    return root < 0 ? -1 : 2 * root;
 }
 
 GPROJI_INTERNAL bool gproji_edit_given_face(const gproji_edit_object *object, int32_t face, gproj_error *error) {
-    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, "face", GPROJ_PLACE_FACE, face, error)) return false;
+    if (!gproji_edit_has(object, GPROJI_EDIT_FACE, face, error)) return false;
     if (object->now.face_halfedge[face] >= 0) return true;
-    gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face);
-    return false;
+    return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_FACE, face, "face %d is no more: it has vanished", face) ==
+           GPROJ_OK;
 }
 
 /* The half-edge in a face at the corner that a vertex number stands for; -1 and an error without one. */
 GPROJI_INTERNAL int32_t gproji_edit_given_corner(gproji_edit_object *object, int32_t face, int32_t vertex,
                                                  gproj_error *error) {
     int32_t h;
-    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, "vertex", GPROJ_PLACE_VERTEX, vertex, error)) return -1;
+    if (!gproji_edit_has(object, GPROJI_EDIT_VERTEX, vertex, error)) return -1;
     h = gproji_edit_corner(&object->now, face, gproji_edit_root(object->now.vertex_into, vertex));
     if (h < 0)
         gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face, "face %d has no corner at vertex %d", face,
@@ -15749,32 +15690,29 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
-/* Refuses a collapse after which a triangle at half-edge h would be an edge without a face. */
-GPROJI_INTERNAL gproj_code gproji_check_vanishing(const gproji_edit_store *s, int32_t h, gproj_error *error) {
-    int32_t x, y;
-    if (!gproji_edit_sees(s, h, 3)) return GPROJ_OK;
-    x = s->face[s->next[h] ^ 1], y = s->face[s->prev[h] ^ 1];
-    if (x != y || (x >= 0 && x != s->face[h ^ 1])) return GPROJ_OK;
-    return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-                       "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its edges",
-                       h / 2, s->face[h]);
-}
-
 GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], left, right, i;
-    gproj_code code = gproji_check_vanishing(s, h, error);
-    if (!code) code = gproji_check_vanishing(s, g, error);
-    if (code) return code;
+    /* 1. A triangle that vanishes must not be an edge without a face then. */
+    for (i = 0; i < 2; ++i) {
+        int32_t at = h ^ i, x, y;
+        if (!gproji_edit_sees(s, at, 3)) continue;
+        x = s->face[s->next[at] ^ 1], y = s->face[s->prev[at] ^ 1];
+        if (x == y && (x < 0 || x == s->face[at ^ 1]))
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                               "edge %d cannot be collapsed: face %d would vanish, and no other would be left at its "
+                               "edges",
+                               h / 2, s->face[at]);
+    }
+    /* 2. The mesh must not be pinched between two boundaries. */
     if (s->face[h] >= 0 && s->face[g] >= 0 && gproj_mesh_is_boundary_vertex(&object->view, a) &&
         gproj_mesh_is_boundary_vertex(&object->view, b))
-        return gproji_fail(
-            error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
-            "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex %d, "
-            "and the mesh would be pinched there",
-            h / 2, a, b);
-    /* The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b, may
-       only be those at triangles on the edge and at its faces. */
+        return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
+                           "edge %d cannot be collapsed: it goes from boundary to boundary, from vertex %d to vertex "
+                           "%d, and the mesh would be pinched there",
+                           h / 2, a, b);
+    /* 3. The link condition (Dey, Edelsbrunner, Guha, Nekhayev 1999): marks at a's neighbours and faces, met from b,
+       may only be those at triangles on the edge and at the faces there. */
     if (object->stamp == INT32_MAX) {
         gproji_fill(s->vertex_mark, s->count[GPROJI_EDIT_VERTEX], 0);
         gproji_fill(s->face_mark, s->count[GPROJI_EDIT_FACE], 0);
@@ -15861,50 +15799,6 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 
 /* -- from an edit to a mesh -- */
 
-/* Numbers the vertices and faces that are left, and writes polygons and polylines. False without memory. */
-GPROJI_INTERNAL bool gproji_edit_write(gproji_edit_object *object, gproji_pool *pool, gproji_draft *draft,
-                                       int32_t *number[GPROJI_EDIT_NUMBERED]) {
-    const gproji_edit_store *s = &object->now;
-    gproji_soup *soup = &draft->soup;
-    int32_t *vertex, *face, kind, v, f, h, k, p, i, begin, end = 0, corners = 0;
-    bool complete = true;
-    /* 1. Room, as large as can be needed. */
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
-        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        complete = complete && number[kind];
-    }
-    if (!gproji_draft_take(draft, pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
-                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]) ||
-        !complete)
-        return false;
-    /* 2. Vertices; a merged one gets the number that the lower one has already. */
-    vertex = number[GPROJI_EDIT_VERTEX], face = number[GPROJI_EDIT_FACE];
-    for (v = 0; v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
-        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
-        if (s->vertex_into[v] != v) continue;
-        gproji_copy3(s->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count++);
-    }
-    /* 3. Faces. */
-    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
-        h = s->face_halfedge[f];
-        face[f] = h < 0 ? -1 : soup->face_count;
-        if (h < 0) continue;
-        draft->degree[soup->face_count++] = s->face_degree[f];
-        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft->corner[corners++] = vertex[s->origin[h]];
-    }
-    /* 4. Polylines, without repeated vertices; those with fewer than two are left out. */
-    for (p = 0; p < s->polyline_count; ++p) {
-        begin = end;
-        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
-            v = vertex[s->polyline_vertex[i]];
-            if (end == begin || draft->vertex[end - 1] != v) draft->vertex[end++] = v;
-        }
-        if (end < begin + 2) end = begin;
-        if (end > begin) draft->start[++soup->polyline_count] = end;
-    }
-    return true;
-}
-
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
@@ -15912,19 +15806,52 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     gproji_draft draft;
     gproji_pool pool;
     gproj_code code;
+    gproji_soup *soup = &draft.soup;
     int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
-    int32_t kind, f, e, h, k, i, *edge;
+    int32_t *vertex, *edge, *face, kind, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
+    bool taken = true;
     if (!object) return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &object->heap);
-    code = gproji_edit_write(object, &pool, &draft, number) ? gproji_mesh_build(made, &draft.soup, error)
-                                                            : gproji_fail_memory(error);
-    /* The mesh has numbered the edges: both are walked side by side. */
-    edge = number[GPROJI_EDIT_EDGE];
+    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
+        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
+        taken = taken && number[kind];
+    }
+    vertex = number[GPROJI_EDIT_VERTEX], edge = number[GPROJI_EDIT_EDGE], face = number[GPROJI_EDIT_FACE];
+    if (!gproji_draft_take(&draft, &pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]))
+        taken = false;
+    code = taken ? GPROJ_OK : gproji_fail_memory(error);
+    /* 1. Vertices; a merged one gets the number that the lower one has already. */
+    for (v = 0; !code && v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
+        vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
+        if (s->vertex_into[v] != v) continue;
+        gproji_copy3(s->position + 3 * (size_t)v, draft.position + 3 * (size_t)soup->vertex_count++);
+    }
+    /* 2. Faces. */
+    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+        h = s->face_halfedge[f];
+        face[f] = h < 0 ? -1 : soup->face_count;
+        if (h < 0) continue;
+        draft.degree[soup->face_count++] = s->face_degree[f];
+        for (k = 0; k < s->face_degree[f]; ++k, h = s->next[h]) draft.corner[corners++] = vertex[s->origin[h]];
+    }
+    /* 3. Polylines, without repeated vertices; those with fewer than two are left out. */
+    for (p = 0; !code && p < s->polyline_count; ++p) {
+        begin = end;
+        for (i = s->polyline_start[p]; i < s->polyline_start[p + 1]; ++i) {
+            v = vertex[s->polyline_vertex[i]];
+            if (end == begin || draft.vertex[end - 1] != v) draft.vertex[end++] = v;
+        }
+        if (end < begin + 2) end = begin;
+        if (end > begin) draft.start[++soup->polyline_count] = end;
+    }
+    if (!code) code = gproji_mesh_build(made, soup, error);
+    /* 4. Edges, which the mesh has numbered: both are walked side by side. */
     for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[number[GPROJI_EDIT_FACE][f]];
+        h = s->face_halfedge[f], k = made->mesh.face_halfedge[face[f]];
         for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
     }
     for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
@@ -15962,22 +15889,19 @@ GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
-    gproj_code code;
     int32_t from, to;
     if (!object || !gproji_edit_given_face(object, face, error)) return -1;
     from = gproji_edit_given_corner(object, face, vertex, error);
     to = from < 0 ? -1 : gproji_edit_given_corner(object, face, other, error);
     if (to < 0) return -1;
     if (from == to)
-        code = gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
-                           "face %d cannot be cut from vertex %d to itself", face, vertex);
-    else if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
-        code = gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
-                           "face %d cannot be cut between vertices %d and %d: they have an edge already", face, vertex,
-                           other);
-    else
-        code = gproji_edit_reserve(object, 0, 1, 1, 0, error);
-    return code ? -1 : gproji_edit_cut(object, from, to) / 2;
+        return gproji_none(gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, face,
+                                       "face %d cannot be cut from vertex %d to itself", face, vertex));
+    if (gproji_halfedge_between(&object->view, object->now.origin[from], object->now.origin[to]) >= 0)
+        return gproji_none(gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, face,
+                                       "face %d cannot be cut between vertices %d and %d: they have an edge already",
+                                       face, vertex, other));
+    return gproji_edit_reserve(object, 0, 1, 1, 0, error) ? -1 : gproji_edit_cut(object, from, to) / 2;
 }
 
 GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error) {
@@ -16008,7 +15932,7 @@ GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
     double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
     double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
-    double x = squares > 0 ? gproji_turn(polygon, a, b, c) / squares : 0;
+    double x = squares > 0 ? gproji_turn2(polygon->xy, a, b, c) / squares : 0;
     if (!(x > -1)) x = -1; /* a position is not finite */
     return x >= least ? 1 / x : (2 - x / least) / least;
 }
@@ -16095,9 +16019,9 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
     gproji_pool_start(&pool, &object->heap);
     code = gproji_edit_reserve(object, 0, cuts, cuts, 0, error);
     side = gproji_min(degree, GPROJI_KLINCSEK_MAX);
-    work.halfedge = (int32_t *)gproji_pool_take(&pool, degree, sizeof(int32_t));
+    work.halfedge = gproji_take_ints(&pool, degree);
     work.least = (double *)gproji_pool_take(&pool, side * side, sizeof(double));
-    work.apex = (int32_t *)gproji_pool_take(&pool, side * side, sizeof(int32_t));
+    work.apex = gproji_take_ints(&pool, side * side);
     if (!code && !gproji_polygon_take(&work.polygon, &pool, degree)) code = gproji_fail_memory(error);
     if (!code && face == -1) { /* all faces or none: a later one may be refused */
         saved = gproji_edit_save(object, &copy);
@@ -16140,8 +16064,8 @@ GPROJI_INTERNAL gproj_code gproji_strip_take(const gproji_edit_store *s, gproji_
     if (strip->count == 1)
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, h / 2, "edge %d has no quad at either side",
                            h / 2);
-    strip->rung = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
-    strip->side = (int32_t *)gproji_pool_take(pool, strip->count, sizeof(int32_t));
+    strip->rung = gproji_take_ints(pool, strip->count);
+    strip->side = gproji_take_ints(pool, strip->count);
     if (!strip->rung || !strip->side) return gproji_fail_memory(error);
     for (i = 0, g = first; i < strip->count; ++i, g = s->next[s->next[g]] ^ 1) {
         if (g == h) strip->given = i;
@@ -16325,9 +16249,9 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    dual.vertex = (int32_t *)gproji_pool_take(&pool, vertices, sizeof(int32_t));
-    dual.midpoint = (int32_t *)gproji_pool_take(&pool, edges, sizeof(int32_t));
-    dual.seen = (int32_t *)gproji_pool_take(&pool, faces, sizeof(int32_t));
+    dual.vertex = gproji_take_ints(&pool, vertices);
+    dual.midpoint = gproji_take_ints(&pool, edges);
+    dual.seen = gproji_take_ints(&pool, faces);
     code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
                              mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
                ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
@@ -16372,20 +16296,6 @@ GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
     }
 }
 
-/* Finds the unit eigenvector for the largest eigenvalue of a symmetric 3x3 matrix (destroyed). */
-GPROJI_INTERNAL void gproji_largest_eigenvector3(double m[3][3], double out[3]) {
-    double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, rounding = DBL_EPSILON * DBL_EPSILON;
-    int32_t sweep, largest = 0, k;
-    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
-        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
-        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
-        gproji_jacobi_sweep(m, v);
-    }
-    for (k = 1; k < 3; ++k)
-        if (m[k][k] > m[largest][largest]) largest = k;
-    for (k = 0; k < 3; ++k) out[k] = v[k][largest];
-}
-
 GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
     return mesh->position + 3 * (size_t)mesh->origin[halfedge];
 }
@@ -16394,40 +16304,57 @@ GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const doubl
     return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
-/* Finds a face's least-squares plane: the mean over its vertices and a unit normal. */
-GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
-                                       double normal[3]) {
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, d[3], along[3], u[3], v[3], uu = 0, uv = 0, vv = 0, angle;
-    static const double tiny = 1e-100, most = 1e300;
-    double extent = 0, unit, du, dv;
-    int32_t h = mesh->face_halfedge[face], degree = mesh->face_degree[face], k, i, j;
+/* Finds the least-squares plane of `count` vertices: vertex[h], h = first, next[first], ..., or first, first + 1, ...
+   without `next`. Returns their mean, a unit normal and, unless it is NULL, the direction in the plane in which they
+   scatter least. */
+GPROJI_INTERNAL void gproji_fit_plane(const double *position, int32_t count, const int32_t *vertex, const int32_t *next,
+                                      int32_t first, double mean[3], double normal[3], double *across) {
+    static const double tiny = 1e-100, most = 1e300, rounding = DBL_EPSILON * DBL_EPSILON;
+    double m[3][3] = {{0}}, axes[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, d[3], along[3], u[3], v[3];
+    double extent = 0, unit, du, dv, uu = 0, uv = 0, vv = 0, angle;
+    int32_t h, k, i, j, sweep, longest = 0;
     gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < degree; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / degree, gproji_corner_at(mesh, position, h), mean);
-    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless the face is tiny. */
-    for (k = 0; k < degree && extent < tiny; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1)
+        gproji_add_scaled3(1.0 / count, position + 3 * (size_t)vertex[h], mean);
+    /* 1. A factor for offsets from the mean, so that no square underflows: 1 unless all is tiny. */
+    for (k = 0, h = first; k < count && extent < tiny; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         for (i = 0; i < 3; ++i) extent = gproji_fmax(extent, fabs(d[i]));
     }
     unit = extent > 0 && extent < tiny ? gproji_fmin(1 / extent, most) : 1;
-    h = mesh->face_halfedge[face];
     /* 2. The longest direction first and then, from points without their part along it, the one across: so a narrow
        face has its normal to rounding, too, while the scatter matrix's eigenvectors would have half the digits. */
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         for (i = 0; i < 3; ++i) d[i] *= unit;
         for (i = 0; i < 3; ++i)
-            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
+            for (j = 0; j < 3; ++j) m[i][j] += d[i] * d[j];
     }
-    gproji_largest_eigenvector3(scatter, along);
+    for (sweep = 0; sweep < GPROJI_SWEEPS; ++sweep) { /* each squares the rest beside the diagonal: 4 or 5 are usual */
+        double beside = fabs(m[0][1]) + fabs(m[0][2]) + fabs(m[1][2]);
+        if (beside <= rounding * (fabs(m[0][0]) + fabs(m[1][1]) + fabs(m[2][2]))) break;
+        gproji_jacobi_sweep(m, axes);
+    }
+    for (k = 1; k < 3; ++k)
+        if (m[k][k] > m[longest][longest]) longest = k;
+    gproji_set3(axes[0][longest], axes[1][longest], axes[2][longest], along);
     gproji_tangents3(along, u, v);
-    for (k = 0; k < degree; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_at(mesh, position, h), mean, d);
+    for (k = 0, h = first; k < count; ++k, h = next ? next[h] : h + 1) {
+        gproji_sub3(position + 3 * (size_t)vertex[h], mean, d);
         du = unit * gproji_dot3(d, u), dv = unit * gproji_dot3(d, v);
         uu += du * du, uv += du * dv, vv += dv * dv;
     }
     angle = 0.5 * atan2(2 * uv, uu - vv); /* from u to the direction across */
-    for (k = 0; k < 3; ++k) normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
+    for (k = 0; k < 3; ++k) {
+        normal[k] = cos(angle) * v[k] - sin(angle) * u[k];
+        if (across) across[k] = cos(angle) * u[k] + sin(angle) * v[k];
+    }
+}
+
+GPROJI_INTERNAL void gproji_face_plane(const gproj_mesh *mesh, const double *position, int32_t face, double mean[3],
+                                       double normal[3]) {
+    gproji_fit_plane(position, mesh->face_degree[face], mesh->origin, mesh->next, mesh->face_halfedge[face], mean,
+                     normal, NULL);
 }
 
 /* The largest distance between a face's vertices and the least-squares plane, in the mesh's units. */
@@ -16474,9 +16401,8 @@ GPROJI_INTERNAL void gproji_widen(double value, double *least, double *most) {
 
 /* A face's unit normal along the vectorial area; 0 without area. */
 GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *position, int32_t face, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_area_vector(mesh, position, face, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Unit normals on demand. Each vertex around a large face asks for that face's, so the last few are remembered. */
@@ -16514,11 +16440,10 @@ GPROJI_INTERNAL void gproji_recall_normal(gproji_normals *normals, int32_t face,
 
 /* Finds the mean unit normal over the faces around a vertex; e_z without faces. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vertex, double out[3]) {
-    static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
     double n[3];
-    gproji_copy3(up, out);
+    gproji_copy3(gproji_up, out);
     if (start < 0) return 0;
     gproji_set3(0, 0, 0, out);
     do {
@@ -16529,7 +16454,7 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vert
         }
         h = gproji_rotate(mesh, h);
     } while (h != start);
-    gproji_normalise3(out, up);
+    gproji_normalise3(out, gproji_up);
     return count;
 }
 
@@ -16537,7 +16462,6 @@ GPROJI_INTERNAL int32_t gproji_mean_normal(gproji_normals *normals, int32_t vert
    vector along m + t with b'(m + t) = 0 for their normals b in the least-squares sense, m the mean normal, t orthogonal
    to it and, with fewer than two bisecting planes, as short as can be. Returns the number of faces. */
 GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex, double axis[3]) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = normals->mesh;
     int32_t count = gproji_mean_normal(normals, vertex, axis), start = mesh->vertex_halfedge[vertex], h = start;
     double b[3], e[3], n[3], u[3], v[3], uu = 0, uv = 0, vv = 0, um = 0, vm = 0, ridge, determinant;
@@ -16548,12 +16472,12 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
             double bu, bv, bm;
             gproji_sub3(gproji_corner_at(mesh, normals->position, h ^ 1), gproji_corner_at(mesh, normals->position, h),
                         e);
-            gproji_normalise3(e, none);
+            gproji_normalise3(e, gproji_zero);
             gproji_recall_normal(normals, mesh->face[h], b);
             gproji_recall_normal(normals, mesh->face[h ^ 1], n);
             gproji_add_scaled3(1, n, b);
             gproji_cross3(e, b, b);
-            gproji_normalise3(b, none);
+            gproji_normalise3(b, gproji_zero);
             bu = gproji_dot3(b, u), bv = gproji_dot3(b, v), bm = gproji_dot3(b, axis);
             uu += bu * bu, uv += bu * bv, vv += bv * bv;
             um -= bu * bm, vm -= bv * bm;
@@ -16568,13 +16492,6 @@ GPROJI_INTERNAL int32_t gproji_find_axis(gproji_normals *normals, int32_t vertex
     gproji_add_scaled3((vm * uu - um * uv) / determinant, v, axis);
     gproji_normalise3(axis, axis);
     return count;
-}
-
-/* Finds the axis at a single vertex. */
-GPROJI_INTERNAL int32_t gproji_cone_axis(const gproj_mesh *mesh, const double *position, int32_t vertex,
-                                         double axis[3]) {
-    gproji_normals normals = gproji_normals_of(mesh, position);
-    return gproji_find_axis(&normals, vertex, axis);
 }
 
 /* The largest difference between the normals around a vertex in angle to their axis; 0 with fewer than four faces. */
@@ -17043,9 +16960,8 @@ typedef struct gproji_mirrors {
 
 /* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Mirrors the 3x3 matrix `in` in the plane orthogonal to the half-edge: out = (I - 2 e e') in. */
@@ -17063,7 +16979,6 @@ GPROJI_INTERNAL void gproji_mirror(const gproj_mesh *mesh, int32_t halfedge, con
    parallel. */
 GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *normals, const gproji_mirrors *work,
                                        double m[3]) {
-    static const double up[3] = {0, 0, 1};
     double gaps[3][3] = {{0}}, v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, wanted[3] = {0, 0, 0}, least, column[3];
     int32_t at, edges = 0, sweep, best = 0, i, j, k;
     /* 1. `gaps`: the mean D'D over edges, D = image_j - mirror(image_i); m closes along an edge with D m = 0. `wanted`:
@@ -17099,23 +17014,18 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
         gproji_add_scaled3(gproji_dot3(column, wanted), column, m);
     }
     if (gproji_length3(m) < 0.5 * gproji_length3(wanted)) gproji_copy3(wanted, m);
-    gproji_normalise3(m, up);
+    gproji_normalise3(m, gproji_up);
 }
 
-GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
-    static const double none[3] = {0, 0, 0};
+GPROJI_INTERNAL bool gproji_vertex_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
     gproji_mirrors work;
-    gproji_pool pool;
-    bool taken;
     int32_t v, at;
-    gproji_pool_start(&pool, heap);
     work.first = work.last = 0;
-    work.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 9 * sizeof *work.image);
-    work.queue = (int32_t *)gproji_pool_take(&pool, mesh->vertex_count, sizeof *work.queue);
-    work.reached = (bool *)gproji_pool_take_zeroed(&pool, mesh->vertex_count, sizeof *work.reached);
-    taken = !pool.failed;
-    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+    work.image = (double *)gproji_pool_take(pool, mesh->vertex_count, 9 * sizeof *work.image);
+    work.queue = gproji_take_ints(pool, mesh->vertex_count);
+    work.reached = (bool *)gproji_pool_take_zeroed(pool, mesh->vertex_count, sizeof *work.reached);
+    for (v = 0; !pool->failed && v < mesh->vertex_count; ++v) {
         double *identity = work.image + 9 * (size_t)v, m[3];
         if (work.reached[v] || mesh->vertex_halfedge[v] < 0) continue;
         /* 1. Reflections along a breadth-first tree, which keeps their products short. */
@@ -17140,11 +17050,10 @@ GPROJI_INTERNAL bool gproji_vertex_field(gproji_heap *heap, const gproj_mesh *me
             const double *image = work.image + 9 * (size_t)work.queue[at];
             double *out = x + 3 * (size_t)work.queue[at];
             gproji_set3(gproji_dot3(image, m), gproji_dot3(image + 3, m), gproji_dot3(image + 6, m), out);
-            gproji_normalise3(out, none);
+            gproji_normalise3(out, gproji_zero);
         }
     }
-    gproji_pool_give_all(&pool);
-    return taken;
+    return !pool->failed;
 }
 
 /* -- the field for a face offset -- */
@@ -17165,7 +17074,7 @@ typedef struct gproji_parallels {
 } gproji_parallels;
 
 enum {
-    GPROJI_PARALLEL_ROUNDS = 2, /* restarts: the recurrences' rounding ends with them */
+    GPROJI_PARALLEL_ROUNDS = 2, /* in each stage: a restart ends the rounding of the recurrences */
     GPROJI_PARALLEL_STEPS = 1000
 };
 
@@ -17210,47 +17119,23 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
     }
 }
 
-/* Descends once, until the slope is a small part of that at the start. */
-GPROJI_INTERNAL void gproji_descend_parallels(gproji_parallels *p, double *x) {
-    size_t count = 3 * (size_t)p->mesh->vertex_count, i;
-    double square, before, start, curvature;
-    int32_t n;
-    gproji_apply_parallels(p, x, 1, p->slope);
-    for (i = 0; i < count; ++i) p->step[i] = p->slope[i] = -p->slope[i];
-    start = square = gproji_dot(p->slope, p->slope, count);
-    for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * start && square > 1e-30 * (double)count; ++n) {
-        gproji_apply_parallels(p, p->step, 0, p->image);
-        curvature = gproji_dot(p->step, p->image, count);
-        if (!(curvature > 0)) return;
-        for (i = 0; i < count; ++i) {
-            x[i] += square / curvature * p->step[i];
-            p->slope[i] -= square / curvature * p->image[i];
-        }
-        before = square;
-        square = gproji_dot(p->slope, p->slope, count);
-        for (i = 0; i < count; ++i) p->step[i] = p->slope[i] + square / before * p->step[i];
-    }
-}
-
-GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh, double *x) {
+GPROJI_INTERNAL bool gproji_face_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_normals_of(mesh, mesh->position);
+    size_t count = 3 * (size_t)mesh->vertex_count, k;
+    double square, before, first, curvature;
     gproji_parallels p;
-    gproji_pool pool;
-    bool taken;
-    int32_t i, stage, v;
-    gproji_pool_start(&pool, heap);
+    int32_t i, v, round, n;
     p.mesh = mesh;
-    p.normal = (double *)gproji_pool_take(&pool, mesh->face_count, 3 * sizeof *p.normal);
-    p.direction = (double *)gproji_pool_take(&pool, mesh->edge_count, 3 * sizeof *p.direction);
-    p.slope = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.slope);
-    p.step = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.step);
-    p.image = (double *)gproji_pool_take(&pool, mesh->vertex_count, 3 * sizeof *p.image);
-    taken = !pool.failed;
-    for (i = 0; taken && i < mesh->face_count; ++i)
-        gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
-    for (i = 0; taken && i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
-    /* Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
-    for (v = 0; taken && v < mesh->vertex_count; ++v) {
+    p.normal = (double *)gproji_pool_take(pool, mesh->face_count, 3 * sizeof *p.normal);
+    p.direction = (double *)gproji_pool_take(pool, mesh->edge_count, 3 * sizeof *p.direction);
+    p.slope = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.slope);
+    p.step = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.step);
+    p.image = (double *)gproji_pool_take(pool, mesh->vertex_count, 3 * sizeof *p.image);
+    if (pool->failed) return false;
+    for (i = 0; i < mesh->face_count; ++i) gproji_unit_normal(mesh, mesh->position, i, p.normal + 3 * (size_t)i);
+    for (i = 0; i < mesh->edge_count; ++i) gproji_edge_direction(mesh, 2 * i, p.direction + 3 * (size_t)i);
+    /* 1. Each vertex begins by itself, at x = a / cos(angle) with the cone's axis a. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
         double axis[3], cosine = 0;
         gproji_set3(0, 0, 0, x + 3 * (size_t)v);
@@ -17262,23 +17147,38 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_heap *heap, const gproj_mesh *mesh
         } while (h != start);
         gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
     }
-    for (stage = 0; taken && stage < 2; ++stage) {
-        p.boundary = stage == 1;
-        for (i = 0; i < GPROJI_PARALLEL_ROUNDS; ++i) gproji_descend_parallels(&p, x);
+    /* 2. Conjugate gradients, in each round until the slope is a small part of the first. */
+    for (round = 0; round < 2 * GPROJI_PARALLEL_ROUNDS; ++round) {
+        p.boundary = round >= GPROJI_PARALLEL_ROUNDS;
+        gproji_apply_parallels(&p, x, 1, p.slope);
+        for (k = 0; k < count; ++k) p.step[k] = p.slope[k] = -p.slope[k];
+        first = square = gproji_dot(p.slope, p.slope, count);
+        for (n = 0; n < GPROJI_PARALLEL_STEPS && square > 1e-26 * first && square > 1e-30 * (double)count; ++n) {
+            gproji_apply_parallels(&p, p.step, 0, p.image);
+            curvature = gproji_dot(p.step, p.image, count);
+            if (!(curvature > 0)) break;
+            for (k = 0; k < count; ++k) {
+                x[k] += square / curvature * p.step[k];
+                p.slope[k] -= square / curvature * p.image[k];
+            }
+            before = square;
+            square = gproji_dot(p.slope, p.slope, count);
+            for (k = 0; k < count; ++k) p.step[k] = p.slope[k] + square / before * p.step[k];
+        }
     }
-    gproji_pool_give_all(&pool);
-    return taken;
+    return true;
 }
 
 /* -- the meshes -- */
 
-typedef bool (*gproji_field)(gproji_heap *heap, const gproj_mesh *mesh, double *x);
+/* Finds x from zeros; false without memory for the work. */
+typedef bool (*gproji_field)(gproji_pool *pool, const gproj_mesh *mesh, double *x);
 
 /* Makes the mesh with vertices v + distance * x. */
 GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distance, gproji_field field,
                                           const gproj_host *host, gproj_error *error) {
     gproj_mesh *offset;
-    gproji_heap *heap;
+    gproji_pool pool;
     gproj_code code;
     size_t count, i;
     double *x;
@@ -17291,12 +17191,12 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
     if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
     offset = gproj_mesh_copy(mesh, host, error);
     if (!offset) return NULL;
-    heap = &gproji_mesh_owner(offset)->heap;
+    gproji_pool_start(&pool, &gproji_mesh_owner(offset)->heap);
     count = 3 * (size_t)mesh->vertex_count;
-    x = (double *)gproji_take_zeroed(heap, count, sizeof *x);
-    code = x && field(heap, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
+    x = (double *)gproji_pool_take_zeroed(&pool, (int64_t)count, sizeof *x);
+    code = x && field(&pool, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
     for (i = 0; !code && i < count; ++i) offset->position[i] += distance * x[i];
-    gproji_give(heap, x, count, sizeof *x);
+    gproji_pool_give_all(&pool);
     if (!code) code = gproji_check_positions(mesh->vertex_count, offset->position, "offset vertex", error);
     if (!code) return offset;
     gproj_mesh_destroy(offset);
@@ -17332,8 +17232,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     int32_t e;
     gproji_error_clear(error);
     if (!gproji_correspond(mesh, offset)) {
-        gproji_refuse(
-            error, "a support structure is between a mesh and its offset: there are not two meshes of the same faces");
+        gproji_refuse(error,
+                      "a support structure is between a mesh and its offset: there are not two meshes of the same "
+                      "faces");
         return NULL;
     }
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
@@ -17363,7 +17264,6 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
-    static const double none[3] = {0, 0, 0};
     gproj_offset_measures m;
     double unit, d[3], n[3];
     int32_t f, v, e, k, h;
@@ -17399,7 +17299,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
         gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
         gproji_cross3(direction, n, n);
-        gproji_normalise3(n, none);
+        gproji_normalise3(n, gproji_zero);
         m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
     }
     return m;
@@ -17494,7 +17394,6 @@ typedef struct gproji_filling {
     int32_t vertices;
     int32_t curve_vertices; /* those on the boundary, and on rings along it, come first */
     int32_t cut_vertices;   /* then those on cuts */
-    int32_t leaves;         /* patches that were filled */
 } gproji_filling;
 
 GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
@@ -17872,7 +17771,6 @@ GPROJI_INTERNAL double gproji_inner_angle(const double *xy, int32_t p, int32_t q
 
 /* Checks the curve and the options that stand alone, and projects the points into the curve's plane. */
 GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
-    static const double none[3] = {0, 0, 0};
     const gproj_fill_options *o = &f->options;
     double a[3], b[3], cross[3], extent = 0;
     int32_t i, j;
@@ -17904,7 +17802,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
         gproji_cross3(a, b, cross);
         gproji_add_scaled3(0.5, cross, f->normal);
     }
-    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, none))
+    if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, gproji_zero))
         return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "the curve encloses no area; it must not run back along itself");
     gproji_tangents3(f->normal, f->across, f->up);
@@ -18067,11 +17965,11 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
     }
     if (sum % 2) { /* names the side that would bear it best */
         side = gproji_best_change(f, edges, &change);
-        return gproji_fail(
-            f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
-            "the sides have %d edges together, but quads need an even number; give side %d %d edges instead "
-            "of %d%s",
-            sum, side, edges[side] + change, edges[side], f->options.keep_points ? " (add or leave out a point)" : "");
+        return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[side],
+                           "the sides have %d edges together, but quads need an even number; give side %d %d edges "
+                           "instead of %d%s",
+                           sum, side, edges[side] + change, edges[side],
+                           f->options.keep_points ? " (add or leave out a point)" : "");
     }
     if (sum < 4)
         return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, f->corner.data[0],
@@ -18407,7 +18305,6 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (q = 0; done && q < patch.quad.count; ++q)
         done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
     gproji_patch_give(&patch);
-    ++f->leaves;
     return done;
 }
 
@@ -18430,13 +18327,13 @@ GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32
     memset(m, 0, sizeof *m);
     gproji_pool_start(&m->pool, f->heap);
     m->unknowns = unknowns, m->count = count;
-    m->pair = (int32_t *)gproji_pool_take(&m->pool, 2 * count, sizeof *m->pair);
+    m->pair = gproji_take_ints(&m->pool, 2 * count);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
-    m->row = (int32_t *)gproji_pool_take(&m->pool, count, sizeof *m->row);
+    m->row = gproji_take_ints(&m->pool, count);
     m->place = (int64_t *)gproji_pool_take(&m->pool, count, sizeof *m->place);
     m->value = (double *)gproji_pool_take(&m->pool, count, sizeof *m->value);
     m->cholesky = gproj_cholesky_create(f->host);
-    return m->pair && m->start && m->row && m->place && m->value && m->cholesky;
+    return !m->pool.failed && m->cholesky;
 }
 
 GPROJI_INTERNAL void gproji_pairs_give(gproji_pairs *m) {
@@ -18635,7 +18532,7 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
         u.step = (double *)gproji_pool_take(&u.m.pool, unknowns, sizeof *u.step);
         u.start = (double *)gproji_pool_take(&u.m.pool, 2 * (int64_t)f->vertices, sizeof *u.start);
     }
-    if (!(u.edge && u.gradient && u.step && u.start)) code = gproji_fail_memory(f->error);
+    if (u.m.pool.failed || !u.m.cholesky) code = gproji_fail_memory(f->error);
     /* 1. Wanted edges: the boundary's own, harmonic inside. */
     size = u.start; /* still free, and large enough */
     for (i = 0; !code && i < f->boundary; ++i)
@@ -18715,7 +18612,7 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     size_t at;
     gproj_code code;
     f->polygon.count = (size_t)n, f->patch.count = 1, f->patch.data[0] = n;
-    f->quad.count = 0, f->vertices = n, f->leaves = 0;
+    f->quad.count = 0, f->vertices = n;
     *good = false;
     /* 1. Rings, near the boundary as yet, and the outline inside them. */
     for (ring = 1; ring <= f->options.rings; ++ring)
@@ -18754,29 +18651,16 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
     return code;
 }
 
-/* Tries variants from the wanted one on, with valences up to 5, then 6, then any. */
-GPROJI_INTERNAL gproj_code gproji_fill_outline(gproji_filling *f) {
-    static const int32_t valence[3] = {5, 6, INT32_MAX};
-    int32_t variant = f->options.variant, pass, tries;
-    bool good = false;
-    gproj_code code = GPROJ_OK;
-    for (pass = 0; pass < 3; ++pass)
-        for (tries = 0; tries < GPROJI_FILL_TRIES && variant < INT32_MAX - tries && !code && !good; ++tries) {
-            f->options.variant = variant + tries;
-            code = gproji_try_filling(f, valence[pass], &good);
-        }
-    if (code || good) return code;
-    return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                       "no filling without a quad turned over was found; divide the sides finer or mark other corners");
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
+    static const int32_t most[3] = {5, 6, INT32_MAX};
     gproji_mesh_object *object;
     gproji_filling f;
     gproj_fill_info found;
     gproj_code code;
-    int32_t i;
+    int32_t variant, tries, i;
+    bool good = false;
+    size_t at;
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
@@ -18791,9 +18675,21 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_divide_sides(&f);
     if (!code) code = gproji_divide_curve(&f);
-    if (!code) code = gproji_fill_outline(&f);
+    /* 1. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
+    variant = f.options.variant;
+    for (tries = 0; !code && !good && tries < 3 * GPROJI_FILL_TRIES; ++tries) {
+        if (variant >= INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
+        f.options.variant = variant + tries % GPROJI_FILL_TRIES;
+        code = gproji_try_filling(&f, most[tries / GPROJI_FILL_TRIES], &good);
+    }
+    if (!code && !good)
+        code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
+                           "no filling without a quad turned over was found; divide the sides finer or mark other "
+                           "corners");
     if (!code) code = gproji_build_filling(&f, object);
-    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides, found.patch_count = f.leaves;
+    /* 2. Properties. */
+    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides;
+    for (at = 0; !code && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
     for (i = f.boundary; !code && i < f.vertices; ++i) {
         int32_t valence = gproj_mesh_valence(&object->mesh, i);
         found.irregular_count += valence != 4;
@@ -18927,10 +18823,12 @@ typedef struct gproji_form_work {
     double *area;      /* the vectorial area of each face */
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
+    gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for its centre */
 } gproji_form_work;
 
 struct gproj_form {
     gproji_heap own;
+    gproji_pool pool; /* has the arrays below, but those of `unknowns` */
     gproj_error error;
     gproj_host host;
     gproj_mesh *mesh;
@@ -18958,12 +18856,9 @@ struct gproj_form {
 
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_heap *own;
-    size_t vertices, faces;
     int32_t i;
     if (!form) return;
     own = &form->own;
-    vertices = form->mesh ? (size_t)form->mesh->vertex_count : 0;
-    faces = form->mesh ? (size_t)form->mesh->face_count : 0;
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
     gproji_give(own, form->statics, 1, sizeof *form->statics);
     while (form->part) {
@@ -18976,13 +18871,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     for (i = 0; i < form->unknowns.count; ++i)
         gproji_give(own, form->unknowns.block[i].value, (size_t)form->unknowns.block[i].count, sizeof(double));
     gproji_give(own, form->unknowns.block, form->unknowns.capacity, sizeof *form->unknowns.block);
-    gproji_give(own, form->original, 3 * vertices, sizeof *form->original);
-    gproji_give(own, form->before, 3 * vertices, sizeof *form->before);
-    gproji_give(own, form->normal, faces, sizeof *form->normal);
-    gproji_give(own, form->axis, faces, sizeof *form->axis);
-    gproji_give(own, form->cone, vertices, sizeof *form->cone);
-    gproji_give(own, form->work.area, 3 * faces, sizeof *form->work.area);
-    gproji_give(own, form->work.ring, (size_t)form->work.ring_size, sizeof *form->work.ring);
+    gproji_pool_give_all(&form->pool);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
 }
@@ -19007,9 +18896,9 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
         for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
         if (k == 3) continue;
-        gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                    "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with", i);
-        return false;
+        return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                           "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with",
+                           i) == GPROJ_OK;
     }
     return true;
 }
@@ -19019,31 +18908,35 @@ static const double gproji_least_edge = 1e-305;
 
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host) {
     gproj_form *form = (gproj_form *)gproji_create_object(host, sizeof(gproj_form), NULL);
+    gproji_pool *pool;
+    int64_t vertices, faces;
     int32_t i, k, first, ring = 1;
     double edge;
     if (!form) return NULL;
+    pool = &form->pool;
+    gproji_pool_start(pool, &form->own);
     gproji_error_clear(&form->error);
     if (host) form->host = *host;
     form->mesh = mesh;
     form->scale = 1;
     form->planarity = -1;
     if (!mesh) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "there is no mesh: reading or building it failed, see its error");
+        gproji_refuse(&form->error, "there is no mesh: reading or building it failed, see its error");
         return form;
     }
     /* 1. Arrays, and the system. */
     for (i = 0; i < mesh->vertex_count; ++i) ring = gproji_max(ring, gproj_mesh_valence(mesh, i));
     for (i = 0; i < mesh->face_count; ++i) ring = gproji_max(ring, mesh->face_degree[i]);
+    vertices = mesh->vertex_count, faces = mesh->face_count;
     form->work.ring_size = ring;
-    form->original = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->original);
-    form->before = (double *)gproji_take(&form->own, 3 * (size_t)mesh->vertex_count, sizeof *form->before);
-    form->normal = (int32_t *)gproji_take(&form->own, (size_t)mesh->face_count, sizeof *form->normal);
-    form->work.area = (double *)gproji_take(&form->own, 3 * (size_t)mesh->face_count, sizeof *form->work.area);
-    form->work.ring = (int32_t *)gproji_take(&form->own, (size_t)ring, sizeof *form->work.ring);
+    form->original = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->original);
+    form->before = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->before);
+    form->normal = gproji_take_ints(pool, faces);
+    form->work.area = (double *)gproji_pool_take(pool, faces, 3 * sizeof *form->work.area);
+    form->work.ring = gproji_take_ints(pool, ring);
+    form->work.term = (gproj_term *)gproji_pool_take(pool, (int64_t)ring + 1, 3 * sizeof *form->work.term);
     form->system = gproj_system_create(&form->host);
-    if (!form->original || !form->before || !form->normal || !form->work.area || !form->work.ring || !form->system)
-        gproji_fail_memory(&form->error);
+    if (pool->failed || !form->system) gproji_fail_memory(&form->error);
     if (form->error.code || !gproji_positions_are_finite(form, &form->error)) return form;
     /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
        the digits of all coordinates. */
@@ -19067,7 +18960,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     if (!gproji_positions_are_finite(form, &form->error)) return form;
     for (i = 0; i < mesh->vertex_count; ++i)
         gproji_to_internal(form, mesh->position + 3 * (size_t)i, form->original + 3 * (size_t)i);
-    for (i = 0; i < mesh->face_count; ++i) form->normal[i] = -1;
+    gproji_fill(form->normal, mesh->face_count, -1);
     gproj_system_add_variables(form->system, 3 * mesh->vertex_count, 3, form->original);
     return form;
 }
@@ -19097,8 +18990,7 @@ GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
 GPROJ_API gproj_system *gproj_form_system(gproj_form *form) { return form ? form->system : NULL; }
 
 GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double *scale) {
-    static const double origin[3] = {0, 0, 0};
-    if (centre) gproji_copy3(form ? form->centre : origin, centre);
+    if (centre) gproji_copy3(form ? form->centre : gproji_zero, centre);
     if (scale) *scale = form ? form->scale : 1;
 }
 
@@ -19166,6 +19058,15 @@ GPROJI_INTERNAL int32_t gproji_new_group(gproj_form *form, const gproji_rule *ru
     return gproji_add_group(gproji_new_part(form, rule, 0), weight);
 }
 
+/* Adds a part with its group, as yet without entries, of which there may be `capacity`; NULL after an error. */
+GPROJI_INTERNAL gproji_part *gproji_open_part(gproj_form *form, const gproji_rule *rule, int32_t capacity,
+                                              double weight) {
+    gproji_part *part = gproji_new_part(form, rule, capacity);
+    if (gproji_add_group(part, weight) < 0) return NULL;
+    part->count = 0;
+    return part;
+}
+
 /* What a builder returns: the group, or -1 after an error. */
 GPROJI_INTERNAL int32_t gproji_built(const gproj_form *form, int32_t group) {
     return gproji_form_ready(form) ? group : -1;
@@ -19220,6 +19121,22 @@ GPROJI_INLINE void gproji_set_term(gproj_term *term, int32_t i, int32_t j, doubl
     term->a = a;
 }
 
+/* Sets the terms of a linear row in a point, whose coordinates are the variables from `first` on. */
+GPROJI_INLINE void gproji_set_point(gproj_term *term, int32_t first) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + k, -1, 0);
+}
+
+/* Sets 3 count terms for the sum over scale a p_i'p_j, a product {i, j, a} each; point p_i has the variables from
+   first[i] on. */
+GPROJI_INTERNAL void gproji_set_products(gproj_term *term, int32_t count, const gproj_term *product,
+                                         const int32_t *first, double scale) {
+    int32_t k, p;
+    for (k = 0; k < 3; ++k)
+        for (p = 0; p < count; ++p)
+            gproji_set_term(term++, first[product[p].i] + k, first[product[p].j] + k, scale * product[p].a);
+}
+
 /* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
 GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
                                          size_t locals) {
@@ -19243,19 +19160,14 @@ GPROJI_INTERNAL bool gproji_take_list(gproj_form *form, const char *name, gproj_
                                       const int32_t *elements) {
     int32_t have = gproji_element_count(form->mesh, place), i;
     if (!elements && *count == 0) *count = have;
-    if (*count < 0 || (!elements && *count > have)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: the count is %d, not 0 to %d", name,
-                    *count, have);
-        return false;
-    }
-    for (i = 0; elements && i < *count; ++i) {
-        if (elements[i] >= 0 && elements[i] < have) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
-                    "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
-                    elements[i], have);
-        return false;
-    }
-    return true;
+    if (*count < 0 || (!elements && *count > have))
+        gproji_refuse(&form->error, "%s: the count is %d, not 0 to %d", name, *count, have);
+    for (i = 0; elements && i < *count && form->error.code == GPROJ_OK; ++i)
+        if (elements[i] < 0 || elements[i] >= have)
+            gproji_fail(&form->error, GPROJ_ERROR_INDEX, place, elements[i],
+                        "%s: there is no %s %d (the mesh has %d, counted from 0)", name, gproji_place_word(place),
+                        elements[i], have);
+    return form->error.code == GPROJ_OK;
 }
 
 /* Copies the caller's list to a new part; NULL after an error. */
@@ -19368,10 +19280,8 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight) {
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_targets_rule, count, vertices);
-    if (part && part->count > 0 && !positions) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "targets: there are no positions");
-        return -1;
-    }
+    if (part && part->count > 0 && !positions)
+        return gproji_none(gproji_refuse(&form->error, "targets: there are no positions"));
     if (part && gproji_check_positions(part->count, positions, "target", &form->error)) return -1;
     return gproji_add_points(part, positions, weight);
 }
@@ -19408,7 +19318,6 @@ GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
 
 /* The unit sum of form->work.area around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
-    static const double up[3] = {0, 0, 1};
     const gproj_mesh *mesh = form->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     gproji_set3(0, 0, 0, out);
@@ -19416,15 +19325,14 @@ GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex
         if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->work.area + 3 * (size_t)mesh->face[h], out);
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    gproji_normalise3(out, up);
+    gproji_normalise3(out, gproji_up);
 }
 
 /* A face's unit normal by form->work.area; without a direction, the normal at the first vertex. */
 GPROJI_INTERNAL void gproji_face_normal(const gproj_form *form, int32_t face, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     gproji_copy3(form->work.area + 3 * (size_t)face, out);
     if (gproji_length3(out) > 1e-12)
-        gproji_normalise3(out, none);
+        gproji_normalise3(out, gproji_zero);
     else
         gproji_vertex_normal(form, form->mesh->origin[form->mesh->face_halfedge[face]], out);
 }
@@ -19476,7 +19384,6 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     gproj_system *s = form->system;
     int32_t h = mesh->face_halfedge[face], *local, n, c, k;
     double normal[3];
-    if (part->group < 0) return;
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
@@ -19509,10 +19416,8 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
         return gproji_form_ready(form) ? form->planarity : -1;
     }
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_planarity_rule, mesh->face_count);
+    part = gproji_open_part(form, &gproji_planarity_rule, mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f)
         if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
@@ -19582,11 +19487,9 @@ typedef struct gproji_gliding {
     int32_t *pinned;          /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
 } gproji_gliding;
 
-GPROJI_INTERNAL gproji_gliding *gproji_gliding_of(const gproji_part *part) { return (gproji_gliding *)part->data; }
-
 /* The curve of the i-th vertex; NULL: it stays. */
 GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int32_t i) {
-    const gproji_gliding *g = gproji_gliding_of(part);
+    const gproji_gliding *g = (gproji_gliding *)part->data;
     return g->curve ? g->curve : g->curve_of[i] < 0 ? NULL : part->curve[g->curve_of[i]];
 }
 
@@ -19594,7 +19497,7 @@ GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int3
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group,
                                             const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    gproji_gliding *gliding = gproji_gliding_of(part);
+    gproji_gliding *gliding = (gproji_gliding *)part->data;
     bool settled = progress->settling >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
@@ -19623,10 +19526,11 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
 
 /* Makes all vertices look for their segments anew. */
 GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
+    gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
         if (!gproji_curve_at(part, i)) continue;
-        gproji_gliding_of(part)->segment[i] = gproji_gliding_of(part)->pinned[i] = -1;
+        gliding->segment[i] = gliding->pinned[i] = -1;
         gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
 }
@@ -19634,12 +19538,13 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
 /* Passes segments and ends, and t1, from which that of the next solve turns; during a solve it is among the rows'
    numbers. */
 GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
+    gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i, k, count;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
-        gproji_pass_integer(stream, &gproji_gliding_of(part)->segment[i], -1, curve ? curve->segment_count - 1 : -1);
-        gproji_pass_integer(stream, &gproji_gliding_of(part)->pinned[i], -1, 1);
+        gproji_pass_integer(stream, &gliding->segment[i], -1, curve ? curve->segment_count - 1 : -1);
+        gproji_pass_integer(stream, &gliding->pinned[i], -1, 1);
         for (k = 0; k < 3 && curve && !passing; ++k) gproji_pass_number(stream, &t1[k].a, -2, 2);
     }
 }
@@ -19665,13 +19570,14 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
    refresh. */
 GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight) {
     static const double axis[3] = {1, 0, 0};
+    gproji_gliding *gliding = (gproji_gliding *)part->data;
     gproj_form *form = part->form;
-    int32_t i, k, c;
+    int32_t i, k;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        gproji_gliding_of(part)->segment[i] = gproji_gliding_of(part)->pinned[i] = -1;
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        gliding->segment[i] = gliding->pinned[i] = -1;
+        gproji_set_point(term, 3 * part->vertex[i]);
         for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->vertex[i],
@@ -19685,10 +19591,7 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
     gproji_part *part = gproji_new_list_part(form, &gproji_gliding_rule, count, vertices);
     gproji_gliding *gliding = gproji_take_gliding(part);
     if (!gliding) return -1;
-    if (!curve) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "gliding: there is no curve");
-        return -1;
-    }
+    if (!curve) return gproji_none(gproji_refuse(&form->error, "gliding: there is no curve"));
     gliding->curve = curve;
     return gproji_add_gliding_rows(part, weight);
 }
@@ -19759,18 +19662,15 @@ static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,  
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
     gproji_part *part = gproji_new_selected_part(form, &gproji_reference_rule, gproji_select_all);
     const gproj_surface **kept = (const gproj_surface **)gproji_part_take(part, 1, sizeof *kept);
-    int32_t i, c;
+    int32_t i;
     if (!kept) return -1;
-    if (!surface) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "reference: there is no surface");
-        return -1;
-    }
+    if (!surface) return gproji_none(gproji_refuse(&form->error, "reference: there is no surface"));
     *kept = surface;
     part->data = kept;
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[c], 3 * part->vertex[i] + c, -1, 0);
+        gproji_set_point(term, 3 * part->vertex[i]);
         gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
     }
     return gproji_built(form, part->group);
@@ -19787,14 +19687,13 @@ typedef struct gproji_difference {
 } gproji_difference;
 
 /* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
-   the element, so that a refresh can fill in their coefficients. `term`: room for 3 (count + 1). */
+   the element, so that a refresh can fill in their coefficients. */
 GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
-                                           const gproji_difference *d, gproj_term *term) {
+                                           const gproji_difference *d) {
     int32_t points = d->count + 1, last, k, i, *local;
+    gproj_term *term = form->work.term;
     if (tangential) {
-        for (i = 0; i < points; ++i)
-            for (k = 0; k < 3; ++k)
-                gproji_set_term(&term[3 * i + k], (i == 0 ? d->centre : d->neighbour[i - 1]) + k, -1, 0);
+        for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
         for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
         tangential->vertex[tangential->count++] = d->element;
         return;
@@ -19813,7 +19712,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
 /* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
    four, else the mean of all (paper 3.2). */
 GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
-                                                 int32_t centre, int32_t count, int32_t element, gproj_term *term) {
+                                                 int32_t centre, int32_t count, int32_t element) {
     const int32_t *ring = form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
@@ -19822,21 +19721,10 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
         pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        gproji_add_difference(form, group, tangential, &d, term);
+        gproji_add_difference(form, group, tangential, &d);
         d.neighbour = pairs + 2;
     }
-    gproji_add_difference(form, group, tangential, &d, term);
-}
-
-/* Room for the largest difference, or face, in this mesh. */
-GPROJI_INTERNAL gproj_term *gproji_take_terms(gproj_form *form) {
-    gproj_term *term = (gproj_term *)gproji_take(&form->own, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
-    if (!term) gproji_fail_memory(&form->error);
-    return term;
-}
-
-GPROJI_INTERNAL void gproji_give_terms(gproj_form *form, gproj_term *term) {
-    gproji_give(&form->own, term, 3 * ((size_t)form->work.ring_size + 1), sizeof *term);
+    gproji_add_difference(form, group, tangential, &d);
 }
 
 /* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
@@ -19849,55 +19737,33 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     return count;
 }
 
-/* Adds the differences along the boundary, except at corners. */
-GPROJI_INTERNAL void gproji_add_boundary_differences(gproj_form *form, int32_t group, gproj_term *term) {
-    const gproj_mesh *mesh = form->mesh;
-    int32_t v;
+static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
+
+/* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
+GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
+    int32_t group = gproji_new_group(form, rule, weight), v, h, pair[2];
+    bool inside = rule != &gproji_boundary_fairness_rule;
+    const gproj_mesh *mesh;
+    gproji_difference d;
+    size_t vertices;
+    if (group < 0) return -1;
+    mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
+    if (inside) gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
+    for (v = 0; inside && v < mesh->vertex_count; ++v) {
+        int32_t count = gproji_vertex_ring(form, v);
+        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
+    }
     for (v = 0; v < mesh->vertex_count; ++v) {
-        gproji_difference d;
-        int32_t pair[2], h;
         if (!gproji_select_gliding(form, v)) continue;
         h = mesh->vertex_halfedge[v];
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
         d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
-        gproji_add_difference(form, group, NULL, &d, term);
+        gproji_add_difference(form, group, NULL, &d);
     }
-}
-
-static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
-
-GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
-    gproj_term *term;
-    int32_t group;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_boundary_fairness_rule, weight);
-    term = gproji_take_terms(form);
-    if (!term) return -1;
-    gproji_add_boundary_differences(form, group, term);
-    gproji_give_terms(form, term);
-    return gproji_built(form, group);
-}
-
-static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
-
-GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    gproj_term *term;
-    int32_t group = gproji_new_group(form, rule, weight), v;
-    size_t vertices;
-    if (group < 0) return -1;
-    vertices = (size_t)form->mesh->vertex_count;
-    gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)form->mesh->edge_count + 2 * vertices));
-    term = gproji_take_terms(form);
-    if (!term) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
-        int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v, term);
-    }
-    gproji_add_boundary_differences(form, group, term);
-    gproji_give_terms(form, term);
     return gproji_built(form, group);
 }
 
@@ -19905,11 +19771,14 @@ GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
     return gproji_add_fairness(form, &gproji_fairness_rule, weight);
 }
 
+GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_boundary_fairness_rule, weight);
+}
+
 /* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
    vertex or face, which is in part->vertex. */
 GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
                                                 const gproj_progress *progress) {
-    static const double up[3] = {0, 0, 1};
     const gproji_part *part = (const gproji_part *)user;
     const double *x = gproj_system_values(system);
     bool faces = part->rule->place == GPROJ_PLACE_FACE;
@@ -19924,7 +19793,7 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
         if (r == 0 || element != part->vertex[(r - 1) / 2]) {
             if (faces) {
                 gproji_copy3(x + part->form->normal[element], normal);
-                gproji_normalise3(normal, up);
+                gproji_normalise3(normal, gproji_up);
             } else {
                 gproji_vertex_normal(part->form, element, normal);
             }
@@ -19941,19 +19810,14 @@ static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
-    gproj_term *term;
     int32_t v;
     if (!gproji_form_ready(form)) return -1;
-    part = gproji_new_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count);
-    term = part ? gproji_take_terms(form) : NULL;
-    if (!term) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
+    part = gproji_open_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count, weight);
+    if (!part) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v, term);
+        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -19965,18 +19829,12 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     gproji_update_areas(form);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         if (form->normal[f] >= 0) continue;
-        if (form->mesh->face_degree[f] > 3) {
-            gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
-                        "%s needs the normals of planar faces: call gproj_add_planarity before", rule->name);
-            return false;
-        }
-        if (!part) {
-            part = gproji_new_part(form, &gproji_triangle_normals_rule, form->mesh->face_count);
-            if (!part) return false;
-            part->count = 0;
-            gproji_add_group(part, 1);
-        }
-        gproji_add_normal(part, f);
+        if (form->mesh->face_degree[f] > 3)
+            return gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_FACE, f,
+                               "%s needs the normals of planar faces: call gproj_add_planarity before",
+                               rule->name) == GPROJ_OK;
+        if (!part) part = gproji_open_part(form, &gproji_triangle_normals_rule, form->mesh->face_count, 1);
+        if (part) gproji_add_normal(part, f);
     }
     return gproji_form_ready(form);
 }
@@ -19987,15 +19845,11 @@ static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
     gproji_part *part;
-    gproj_term *term;
     int32_t f, k;
     if (!gproji_form_ready(form) || !gproji_add_missing_normals(form, &gproji_gauss_rule)) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_gauss_rule, 2 * mesh->face_count);
-    term = part ? gproji_take_terms(form) : NULL;
-    if (!term) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
+    part = gproji_open_part(form, &gproji_gauss_rule, 2 * mesh->face_count, weight);
+    if (!part) return -1;
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f], degree = mesh->face_degree[f], count = 0;
         for (k = 0; k < degree; ++k, h = mesh->next[h]) {
@@ -20003,7 +19857,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
             count += neighbour >= 0;
         }
-        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f, term);
+        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f);
         /* A quad at the boundary still has a difference if it has two opposite neighbours. */
         for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
             gproji_difference d;
@@ -20012,10 +19866,9 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
             d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
-            gproji_add_difference(form, part->group, part, &d, term);
+            gproji_add_difference(form, part->group, part, &d);
         }
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -20076,12 +19929,9 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
 
 /* Sets the 9 terms scale |v_i - v_j|^2 for an edge's ends. */
 GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edge, double scale, gproj_term *term) {
-    int32_t i = 3 * mesh->origin[2 * edge], j = 3 * mesh->origin[2 * edge + 1], k;
-    for (k = 0; k < 3; ++k) {
-        gproji_set_term(&term[3 * k], i + k, i + k, scale);
-        gproji_set_term(&term[3 * k + 1], j + k, j + k, scale);
-        gproji_set_term(&term[3 * k + 2], i + k, j + k, -2 * scale);
-    }
+    static const gproj_term square[3] = {{0, 0, 1}, {1, 1, 1}, {0, 1, -2}};
+    const int32_t end[2] = {3 * mesh->origin[2 * edge], 3 * mesh->origin[2 * edge + 1]};
+    gproji_set_products(term, 3, square, end, scale);
 }
 
 static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
@@ -20097,26 +19947,31 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
         int32_t edge = edges ? edges[k] : k;
         double length = lengths ? lengths[k] * form->scale : gproji_edge_length(form->mesh, form->original, edge);
         gproj_term term[9];
-        if (!(length > 0) || !gproji_is_finite(length)) {
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                        "lengths: edge %d would have the length %g, which is not > 0", edge, length / form->scale);
-            return -1;
-        }
+        if (!(length > 0) || !gproji_is_finite(length))
+            return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
+                                           "lengths: edge %d would have the length %g, which is not > 0", edge,
+                                           length / form->scale));
         gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
         gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
     }
     return gproji_built(form, group);
 }
 
-/* The common length starts at the mean. */
-GPROJI_INTERNAL void gproji_start_length(gproji_part *part) {
-    double *x = gproj_system_values(part->form->system), mean = 0;
-    int32_t k;
-    for (k = 0; k < part->count; ++k) mean += gproji_edge_length(part->form->mesh, x, part->vertex[k]) / part->count;
+/* The common length of edges, or area of all faces, starts at the mean. */
+GPROJI_INTERNAL void gproji_start_mean(gproji_part *part) {
+    gproj_form *form = part->form;
+    bool edges = part->rule->place == GPROJ_PLACE_EDGE;
+    int32_t count = edges ? part->count : form->mesh->face_count, k;
+    double *x = gproj_system_values(form->system), mean = 0;
+    if (!edges) gproji_update_areas(form);
+    for (k = 0; k < count; ++k)
+        mean += (edges ? gproji_edge_length(form->mesh, x, part->vertex[k])
+                       : gproji_length3(form->work.area + 3 * (size_t)k)) /
+                count;
     x[*(const int32_t *)part->data] = mean;
 }
 
-static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_length, NULL, NULL};
+static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_mean, NULL, NULL};
 static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                       GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equal_lengths_acts};
 
@@ -20126,7 +19981,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
     const int32_t *common = gproji_part_unknowns(part, 1);
     int32_t k;
     if (!common) return -1;
-    gproji_start_length(part);
+    gproji_start_mean(part);
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         gproj_term term[10];
@@ -20176,12 +20031,14 @@ static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, 
 static const gproji_rule gproji_midsphere_rule = {"midsphere",     GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_midsphere_acts};
 
+/* (m'm - 2 c'm + s) / (2 R) = 0 for midpoints m = (v_i + v_j) / 2: products of v_i, v_j, c, and a term in s. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
+    static const gproj_term product[5] = {{0, 0, 0.25}, {1, 1, 0.25}, {0, 1, 0.5}, {0, 2, -1}, {1, 2, -1}};
     gproji_part *part = gproji_new_list_part(form, &gproji_midsphere_rule, count, edges);
     const int32_t *first = gproji_part_unknowns(part, 4);
     const double *sphere;
     double half;
-    int32_t k, c;
+    int32_t k;
     if (!first) return -1;
     gproji_start_midsphere(part);
     sphere = gproj_system_values(form->system) + *first;
@@ -20189,15 +20046,9 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         const int32_t *end = form->mesh->origin + 2 * (size_t)part->vertex[k];
+        const int32_t point[3] = {3 * end[0], 3 * end[1], *first};
         gproj_term term[16];
-        for (c = 0; c < 3; ++c) {
-            int32_t i = 3 * end[0] + c, j = 3 * end[1] + c;
-            gproji_set_term(&term[5 * c], i, i, half / 4);
-            gproji_set_term(&term[5 * c + 1], j, j, half / 4);
-            gproji_set_term(&term[5 * c + 2], i, j, half / 2);
-            gproji_set_term(&term[5 * c + 3], i, *first + c, -half);
-            gproji_set_term(&term[5 * c + 4], j, *first + c, -half);
-        }
+        gproji_set_products(term, 5, product, point, half);
         gproji_set_term(&term[15], *first + 3, -1, half);
         gproj_system_add_row(form->system, part->group, 16, term, 0, part->vertex[k]);
     }
@@ -20206,46 +20057,17 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
 
 /* -- vertices on unknown planes and lines -- */
 
-/* The mean original place of `count` vertices. */
-GPROJI_INTERNAL void gproji_original_mean(const gproj_form *form, int32_t count, const int32_t *vertices,
-                                          double mean[3]) {
-    int32_t k;
-    gproji_set3(0, 0, 0, mean);
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], mean);
-}
-
 /* Fits planes n'(v - m) = d to these vertices at the system's x, 4 numbers each: n, d; m is their mean original place.
    One plane, or two at right angles that intersect in the line of best fit. */
 GPROJI_INTERNAL void gproji_fit_planes(const gproj_form *form, int32_t planes, int32_t count, const int32_t *vertices,
-                                       double plane[8]) {
-    const double *x = gproj_system_values(form->system);
-    double scatter[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, mean[3] = {0, 0, 0}, middle[3], along[3], d[3], u[3],
-           v[3], uu = 0, uv = 0, vv = 0, angle;
-    int32_t k, i, j;
-    /* 1. The direction in which they scatter most. */
-    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, x + 3 * (size_t)vertices[k], mean);
-    for (k = 0; k < count; ++k) {
-        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
-        for (i = 0; i < 3; ++i)
-            for (j = 0; j < 3; ++j) scatter[i][j] += d[i] * d[j];
-    }
-    gproji_largest_eigenvector3(scatter, along);
-    /* 2. Across it, the direction with the least scatter, which is the first plane's normal, and the other one. */
-    gproji_tangents3(along, u, v);
-    for (k = 0; k < count; ++k) {
-        gproji_sub3(x + 3 * (size_t)vertices[k], mean, d);
-        uu += gproji_dot3(d, u) * gproji_dot3(d, u);
-        uv += gproji_dot3(d, u) * gproji_dot3(d, v);
-        vv += gproji_dot3(d, v) * gproji_dot3(d, v);
-    }
-    angle = 0.5 * atan2(2 * uv, uu - vv);
-    for (k = 0; k < 3; ++k) {
-        plane[k] = cos(angle) * v[k] - sin(angle) * u[k];
-        if (planes == 2) plane[4 + k] = cos(angle) * u[k] + sin(angle) * v[k];
-    }
-    gproji_original_mean(form, count, vertices, middle);
-    gproji_sub3(mean, middle, mean);
-    for (i = 0; i < planes; ++i) plane[4 * i + 3] = gproji_dot3(plane + 4 * i, mean);
+                                       double plane[8], double m[3]) {
+    double mean[3];
+    int32_t k;
+    gproji_fit_plane(gproj_system_values(form->system), count, vertices, NULL, 0, mean, plane, plane + 4);
+    gproji_set3(0, 0, 0, m);
+    for (k = 0; k < count; ++k) gproji_add_scaled3(1.0 / count, form->original + 3 * (size_t)vertices[k], m);
+    gproji_sub3(mean, m, mean);
+    for (k = 0; k < planes; ++k) plane[4 * k + 3] = gproji_dot3(plane + 4 * k, mean);
 }
 
 /* Vertices on unknown planes, or on lines, each of which is two planes. */
@@ -20264,8 +20086,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
     double plane[8], middle[3];
     gproj_term term[7];
     if (count > (set->planes == 1 ? 3 : 2)) {
-        gproji_fit_planes(form, set->planes, count, vertex, plane);
-        gproji_original_mean(form, count, vertex, middle);
+        gproji_fit_planes(form, set->planes, count, vertex, plane, middle);
         first = gproj_system_add_variables(form->system, 4 * set->planes, 4, plane);
     }
     for (i = 0; i < count; ++i) set->first[from + i] = first;
@@ -20293,10 +20114,10 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
     const gproji_planes *set = (const gproji_planes *)part->data;
     int32_t from, to;
     for (from = 0; from < part->count; from = to) {
-        double plane[8];
+        double plane[8], middle[3];
         for (to = from + 1; to < part->count && set->first[to] == set->first[from]; ++to) continue;
         if (set->first[from] < 0) continue;
-        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane);
+        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane, middle);
         memcpy(gproj_system_values(part->form->system) + set->first[from], plane,
                4 * (size_t)set->planes * sizeof *plane);
     }
@@ -20359,13 +20180,11 @@ GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[loop]);
         h = start; /* the half-edge that leaves a corner, if there is one */
-        if (planes == 2 && corners < 3) {
-            gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
-                        "straight boundary: the boundary through vertex %d has %d corners, and needs 3 to be straight "
-                        "between them",
-                        mesh->origin[h], corners);
-            return -1;
-        }
+        if (planes == 2 && corners < 3)
+            return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, mesh->origin[h],
+                                           "straight boundary: the boundary through vertex %d has %d corners, and "
+                                           "needs 3 to be straight between them",
+                                           mesh->origin[h], corners));
         do {
             part->vertex[part->count++] = mesh->origin[h];
             h = mesh->next[h];
@@ -20394,17 +20213,13 @@ static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPR
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
-    static const double none[3] = {0, 0, 0};
     double n[3] = {0, 0, 0}, across[2][3];
     int32_t group, i, k, c;
     if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (normal) gproji_copy3(normal, n);
-    if (!gproji_normalise3(n, none) || !gproji_is_finite(gproji_length3(n))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "orthogonal edges: the normal has no direction");
-        return -1;
-    }
+    if (!gproji_normalise3(n, gproji_zero) || !gproji_is_finite(gproji_length3(n)))
+        return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal has no direction"));
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
     group = gproji_new_group(form, &gproji_orthogonal_edges_rule, weight);
@@ -20424,21 +20239,17 @@ static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary
                                                             GPROJI_OWN_NONE,       GPROJI_ORDINARY,  NULL};
 
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
-   and v_1. */
+   and v_1: products of v, v_2, v_b, v_1. */
 GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight) {
-    int32_t group, v, k, ring[3];
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight);
+    static const gproj_term product[4] = {{2, 3, 0.5}, {2, 1, -0.5}, {0, 3, -0.5}, {0, 1, 0.5}};
+    int32_t group = gproji_new_group(form, &gproji_orthogonal_boundary_rule, weight), v, k, ring[3], point[4];
+    if (group < 0) return -1;
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v) {
         gproj_term term[12];
         /* A boundary vertex's ring begins and ends along the boundary. */
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
-        for (k = 0; k < 3; ++k) {
-            gproji_set_term(&term[4 * k], 3 * ring[1] + k, 3 * ring[2] + k, 0.5);
-            gproji_set_term(&term[4 * k + 1], 3 * ring[1] + k, 3 * ring[0] + k, -0.5);
-            gproji_set_term(&term[4 * k + 2], 3 * v + k, 3 * ring[2] + k, -0.5);
-            gproji_set_term(&term[4 * k + 3], 3 * v + k, 3 * ring[0] + k, 0.5);
-        }
+        for (point[0] = 3 * v, k = 0; k < 3; ++k) point[k + 1] = 3 * ring[k];
+        gproji_set_products(term, 4, product, point, 1);
         gproj_system_add_row(form->system, group, 12, term, 0, v);
     }
     return gproji_built(form, group);
@@ -20448,9 +20259,8 @@ static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAIN
                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
-    int32_t group, i;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_lifting_rule, weight);
+    int32_t group = gproji_new_group(form, &gproji_lifting_rule, weight), i;
+    if (group < 0) return -1;
     for (i = 0; i < 3 * form->mesh->vertex_count && gproji_form_ready(form); ++i) {
         gproj_term term;
         if (i % 3 == 2) continue; /* z is free */
@@ -20462,34 +20272,28 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
 
 /* -- shapes of faces, areas, volume -- */
 
-/* Start for a circular face's axis point: the circumcentre at the system's x, else the mean. */
-GPROJI_INTERNAL void gproji_start_axis_point(const gproj_form *form, int32_t face, double out[3]) {
-    const gproj_mesh *mesh = form->mesh;
-    const double *x = gproj_system_values(form->system);
-    double mean[3] = {0, 0, 0}, normal[3];
-    int32_t h = mesh->face_halfedge[face], k;
-    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
-    gproji_face_normal(form, face, normal);
-    gproji_circumcentre(mesh, x, face, mean, normal, out);
-}
-
 /* Makes a list for first variables, all -1, unless it is there; false without memory. */
 GPROJI_INTERNAL bool gproji_take_firsts(gproj_form *form, int32_t count, int32_t **list) {
     if (*list) return true;
-    *list = (int32_t *)gproji_take(&form->own, (size_t)count, sizeof **list);
-    if (*list)
-        gproji_fill(*list, count, -1);
-    else
-        gproji_fail_memory(&form->error);
-    return *list != NULL;
+    *list = gproji_take_ints(&form->pool, count);
+    if (!*list) return gproji_fail_memory(&form->error) == GPROJ_OK;
+    gproji_fill(*list, count, -1);
+    return true;
 }
 
+/* Axis points start at the faces' circumcentres, or means, by form->work.area. */
 GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
+    const gproj_mesh *mesh = part->form->mesh;
     double *x = gproj_system_values(part->form->system);
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        gproji_start_axis_point(part->form, part->vertex[i], x + part->form->axis[part->vertex[i]]);
+    int32_t i, k;
+    for (i = 0; i < part->count; ++i) {
+        int32_t face = part->vertex[i], h = mesh->face_halfedge[face];
+        double mean[3] = {0, 0, 0}, normal[3];
+        for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
+            gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
+        gproji_face_normal(part->form, face, normal);
+        gproji_circumcentre(mesh, x, face, mean, normal, x + part->form->axis[face]);
+    }
 }
 
 static const double gproji_settle_free = 1e-4; /* relative to the trace: axis points are free along the axis */
@@ -20520,35 +20324,28 @@ static const gproji_rule gproji_circularity_rule = {"circularity",   GPROJ_CONST
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
+    static const gproj_term product[4] = {{2, 2, 0.5}, {1, 1, -0.5}, {0, 2, -1}, {0, 1, 1}}; /* of c, v_i, v_j */
     const gproj_mesh *mesh;
     gproji_part *part;
-    int32_t f, k, c, h;
+    int32_t f, k, h, point[3];
     if (!gproji_form_ready(form) || !gproji_take_firsts(form, form->mesh->face_count, &form->axis)) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_circularity_rule, mesh->face_count);
+    part = gproji_open_part(form, &gproji_circularity_rule, mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
-    gproji_update_areas(form);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
-        double start[3];
         if (mesh->face_degree[f] == 3) continue;
-        gproji_start_axis_point(form, f, start);
-        if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, start);
+        if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, NULL);
         part->vertex[part->count++] = f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
-            int32_t i = 3 * mesh->origin[h], j = 3 * mesh->origin[mesh->next[h]];
             gproj_term term[12];
-            for (c = 0; c < 3; ++c) {
-                gproji_set_term(&term[4 * c], j + c, j + c, 0.5);
-                gproji_set_term(&term[4 * c + 1], i + c, i + c, -0.5);
-                gproji_set_term(&term[4 * c + 2], form->axis[f] + c, j + c, -1);
-                gproji_set_term(&term[4 * c + 3], form->axis[f] + c, i + c, 1);
-            }
+            point[0] = form->axis[f], point[1] = 3 * mesh->origin[h], point[2] = 3 * mesh->origin[mesh->next[h]];
+            gproji_set_products(term, 4, product, point, 1);
             gproj_system_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
+    gproji_update_areas(form);
+    if (gproji_form_ready(form)) gproji_start_axis_points(part);
     return gproji_built(form, part->group);
 }
 
@@ -20586,9 +20383,10 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
 
 /* Gives cone axes the values that fit the vertices at x best. */
 GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int32_t from, int32_t to) {
+    gproji_normals normals = gproji_normals_of(part->form->mesh, x);
     for (; from < to; ++from) {
         int32_t v = ~part->vertex[from];
-        if (v >= 0) gproji_cone_axis(part->form->mesh, x, v, x + part->form->cone[v]);
+        if (v >= 0) gproji_find_axis(&normals, v, x + part->form->cone[v]);
     }
 }
 
@@ -20612,16 +20410,12 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     /* 1. Axes as variables, and how many rows there can be. */
     mesh = form->mesh;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        double start[3];
         if (gproj_mesh_valence(mesh, v) - gproj_mesh_is_boundary_vertex(mesh, v) < 4) continue;
-        gproji_cone_axis(mesh, gproj_system_values(form->system), v, start);
-        if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, start);
+        if (form->cone[v] < 0) form->cone[v] = gproj_system_add_variables(form->system, 3, 3, NULL);
         rows += gproj_mesh_valence(mesh, v) + 1;
     }
-    part = gproji_new_part(form, &gproji_conicality_rule, rows);
+    part = gproji_open_part(form, &gproji_conicality_rule, rows, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     /* 2. Rows: a'a = 1, then one for each edge between two faces. */
     for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
         int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
@@ -20631,20 +20425,19 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         part->vertex[part->count++] = ~v;
         do {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
-            for (c = 0; c < 3 && face >= 0 && other >= 0; ++c) {
-                gproji_set_term(&term[c], axis + c, -1, 0);
-                gproji_set_term(&term[3 + c], 3 * v + c, -1, 0);
-                gproji_set_term(&term[6 + c], 3 * mesh->origin[h ^ 1] + c, -1, 0);
-                gproji_set_term(&term[9 + c], form->normal[face] + c, -1, 0);
-                gproji_set_term(&term[12 + c], form->normal[other] + c, -1, 0);
-            }
             if (face >= 0 && other >= 0) {
+                gproji_set_point(&term[0], axis);
+                gproji_set_point(&term[3], 3 * v);
+                gproji_set_point(&term[6], 3 * mesh->origin[h ^ 1]);
+                gproji_set_point(&term[9], form->normal[face]);
+                gproji_set_point(&term[12], form->normal[other]);
                 gproj_system_add_row(form->system, part->group, 15, term, 0, v);
                 part->vertex[part->count++] = h;
             }
             h = gproji_rotate(mesh, h);
         } while (h != start && gproji_form_ready(form));
     }
+    if (gproji_form_ready(form)) gproji_start_cones(part);
     return gproji_built(form, part->group);
 }
 
@@ -20652,9 +20445,8 @@ static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_W
                                                        GPROJI_OWN_NONE,  GPROJI_ORDINARY, NULL};
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
-    int32_t group, f, k, c;
-    if (!gproji_form_ready(form)) return -1;
-    group = gproji_new_group(form, &gproji_parallelograms_rule, weight);
+    int32_t group = gproji_new_group(form, &gproji_parallelograms_rule, weight), f, k, c;
+    if (group < 0) return -1;
     for (f = 0; f < form->mesh->face_count; ++f) {
         gproj_term term[4];
         if (form->mesh->face_degree[f] != 4) continue;
@@ -20682,14 +20474,13 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
 
 /* Linearises a face's scale |a(v)| at form->work.area: sets 3 coefficients a corner; returns the constant. */
 GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t face, double scale, gproj_term *term) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
     int32_t h = mesh->face_halfedge[face], k, c;
     double normal[3], slope[3], constant;
     gproji_copy3(form->work.area + 3 * (size_t)face, normal);
     constant = scale * gproji_length3(normal);
-    gproji_normalise3(normal, none);
+    gproji_normalise3(normal, gproji_zero);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
         const double *v = x + 3 * (size_t)mesh->origin[h];
         gproji_area_slope(form, h, normal, slope);
@@ -20701,9 +20492,9 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
 
 /* The terms that gproji_linearise_area fills in; returns their number. */
 GPROJI_INTERNAL int32_t gproji_set_area_terms(const gproj_mesh *mesh, int32_t face, gproj_term *term) {
-    int32_t h = mesh->face_halfedge[face], k, c;
+    int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        for (c = 0; c < 3; ++c) gproji_set_term(&term[3 * k + c], 3 * mesh->origin[h] + c, -1, 0);
+        gproji_set_point(&term[3 * k], 3 * mesh->origin[h]);
     return 3 * mesh->face_degree[face];
 }
 
@@ -20720,35 +20511,24 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
     }
 }
 
-/* The common area starts at the mean. */
-GPROJI_INTERNAL void gproji_start_area(gproji_part *part) {
-    gproj_form *form = part->form;
-    double mean = 0;
-    int32_t f;
-    gproji_update_areas(form);
-    for (f = 0; f < form->mesh->face_count; ++f)
-        mean += gproji_length3(form->work.area + 3 * (size_t)f) / form->mesh->face_count;
-    gproj_system_values(form->system)[*(const int32_t *)part->data] = mean;
-}
-
-static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_area, NULL, NULL};
+static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_mean, NULL, NULL};
 static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,      GPROJ_PLACE_FACE,
                                                     GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_equal_areas_acts};
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
     const int32_t *common = gproji_part_unknowns(part, 1);
-    gproj_term *term = common ? gproji_take_terms(form) : NULL;
+    gproj_term *term;
     int32_t f, count;
-    if (!term) return -1;
-    gproji_start_area(part);
+    if (!common) return -1;
+    term = form->work.term;
+    gproji_start_mean(part);
     gproji_add_group(part, weight);
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
         gproji_set_term(&term[count], *common, -1, -1);
         gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -20774,10 +20554,7 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
     gproj_form *form = part->form;
     int32_t count = 3 * form->mesh->vertex_count, t;
     gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
-    if (!term) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
+    if (!term) return gproji_none(gproji_fail_memory(&form->error));
     gproji_add_group(part, weight);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
@@ -20810,10 +20587,9 @@ static const gproji_rule gproji_volume_rule = {"volume",        GPROJ_CONSTRAINT
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
     gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
     if (!part) return -1;
-    if (!gproji_is_finite(volume)) {
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number");
-        return -1;
-    }
+    if (!gproji_is_finite(volume))
+        return gproji_none(
+            gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "the volume is not a finite number"));
     part->given[0] = volume * form->scale * form->scale * form->scale;
     return gproji_add_global_rows(part, weight, 1);
 }
@@ -20823,9 +20599,9 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 /* Refuses bounds that are no numbers, or that no number satisfies. */
 GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name, double min, double max) {
     if (min <= max && (min <= 0 || gproji_is_finite(min)) && (max >= 0 || gproji_is_finite(max))) return true;
-    gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min, max);
-    return false;
+    return gproji_refuse(&form->error,
+                         "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min,
+                         max) == GPROJ_OK;
 }
 
 /* Takes bounds for something that is never negative: bound = at least and at most, times `scale`; 0 and infinite
@@ -20833,12 +20609,11 @@ GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name,
 GPROJI_INTERNAL bool gproji_take_bounds(gproj_form *form, const char *name, double min, double max, double scale,
                                         double bound[2]) {
     if (!gproji_bounds_are_valid(form, name, min, max)) return false;
-    if ((min < 0 && gproji_is_finite(min)) || !(max > 0)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY for none",
-                    name, min, max);
-        return false;
-    }
+    if ((min < 0 && gproji_is_finite(min)) || !(max > 0))
+        return gproji_refuse(&form->error,
+                             "%s: min = %g and max = %g: these bounds need min >= 0 and max > 0, -INFINITY or INFINITY "
+                             "for none",
+                             name, min, max) == GPROJ_OK;
     bound[0] = min > 0 ? min * scale : 0;
     bound[1] = gproji_is_finite(max) ? max * scale : HUGE_VAL;
     return true;
@@ -20900,23 +20675,16 @@ static const gproji_rule gproji_area_bounds_rule = {"area bounds",   GPROJ_BOUND
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
     const char *name = gproji_area_bounds_rule.name;
-    gproji_part *part;
-    gproj_term *term;
-    int32_t k, side;
-    if (!gproji_form_ready(form)) return -1;
-    part = gproji_new_list_part(form, &gproji_area_bounds_rule, count, faces);
+    gproji_part *part = gproji_new_list_part(form, &gproji_area_bounds_rule, count, faces);
+    int32_t k, side, terms;
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->given)) return -1;
-    term = gproji_take_terms(form);
-    if (!term) return -1;
     gproji_add_group(part, weight);
     for (k = 0; k < part->count; ++k) {
-        for (side = 0; side < 2; ++side) {
-            int32_t terms = gproji_set_area_terms(form->mesh, part->vertex[k], term);
+        terms = gproji_set_area_terms(form->mesh, part->vertex[k], form->work.term);
+        for (side = 0; side < 2; ++side)
             if (gproji_has_bound(part->given, side))
-                gproj_system_add_row(form->system, part->group, terms, term, 0, part->vertex[k]);
-        }
+                gproj_system_add_row(form->system, part->group, terms, form->work.term, 0, part->vertex[k]);
     }
-    gproji_give_terms(form, term);
     return gproji_built(form, part->group);
 }
 
@@ -20928,7 +20696,6 @@ enum {
 /* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient. `size`:
    by how much C changes when the mesh grows by a mean edge length. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const double *price = part->given + GPROJI_PRICE;
     const double *x = gproj_system_values(form->system);
@@ -20941,7 +20708,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         size_t i = 3 * (size_t)mesh->origin[2 * e], j = 3 * (size_t)mesh->origin[2 * e + 1];
         gproji_sub3(x + i, x + j, d);
         gproji_sum_add(&sum, gproji_length3(d));
-        gproji_normalise3(d, none);
+        gproji_normalise3(d, gproji_zero);
         gproji_add_scaled3(price[0], d, gradient + i);
         gproji_add_scaled3(-price[0], d, gradient + j);
     }
@@ -20951,7 +20718,7 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
         int32_t h = mesh->face_halfedge[f];
         gproji_copy3(form->work.area + 3 * (size_t)f, d);
         gproji_sum_add(&areas, gproji_length3(d));
-        gproji_normalise3(d, none);
+        gproji_normalise3(d, gproji_zero);
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             gproji_area_slope(form, h, d, slope);
             gproji_add_scaled3(price[1], slope, gradient + 3 * (size_t)mesh->origin[h]);
@@ -21006,15 +20773,11 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     gproji_total *total;
     int32_t rows;
     if (!part) return -1;
-    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min))) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: %g is not > 0", rule->name, min);
-        return -1;
-    }
-    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "%s: the prices %g and %g must be >= 0 and not both 0", rule->name, length_price, area_price);
-        return -1;
-    }
+    if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min)))
+        return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0", rule->name, min));
+    if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices))
+        return gproji_none(gproji_refuse(&form->error, "%s: the prices %g and %g must be >= 0 and not both 0",
+                                         rule->name, length_price, area_price));
     if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
     part->given[GPROJI_PRICE] = length_price / form->scale;
     part->given[GPROJI_PRICE + 1] = area_price / form->scale / form->scale;
@@ -21120,12 +20883,10 @@ GPROJ_API int32_t gproj_add_rows(gproj_form *form, const char *name, gproj_kind 
     gproji_part *part;
     gproji_own_rule *own;
     if (!gproji_form_ready(form)) return -1;
-    if (kind < GPROJ_CONSTRAINT || kind > GPROJ_BOUND || place < GPROJ_PLACE_NONE || place > GPROJ_PLACE_FACE) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "rows: kind %d must be a gproj_kind, and place %d none, vertex, edge or face", (int32_t)kind,
-                    (int32_t)place);
-        return -1;
-    }
+    if (kind < GPROJ_CONSTRAINT || kind > GPROJ_BOUND || place < GPROJ_PLACE_NONE || place > GPROJ_PLACE_FACE)
+        return gproji_none(gproji_refuse(&form->error,
+                                         "rows: kind %d must be a gproj_kind, and place %d none, vertex, edge or face",
+                                         (int32_t)kind, (int32_t)place));
     part = gproji_new_part(form, &gproji_rows_rule, 0);
     own = (gproji_own_rule *)gproji_part_take(part, 1, sizeof *own);
     if (!own) return -1;
@@ -21158,16 +20919,12 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
     gproji_unknowns *u;
     int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
     if (!part) return -1;
-    if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                    "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values", part->rule->name,
-                    count);
-        return -1;
-    }
-    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u)) {
-        gproji_fail_memory(&form->error);
-        return -1;
-    }
+    if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values)
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                                       "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
+                                       part->rule->name, count));
+    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u))
+        return gproji_none(gproji_fail_memory(&form->error));
     form->unknowns.block = (gproji_unknowns *)block;
     u = &form->unknowns.block[form->unknowns.count];
     u->value = (double *)gproji_take(&form->own, (size_t)count, sizeof *u->value);
@@ -21189,17 +20946,14 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
     double offset, factor;
     int32_t i;
     gproji_error_clear(error);
-    if (!form || !values || count < 0)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "unknowns: no form, no room, or %d of them", count);
+    if (!form || !values || count < 0) return gproji_refuse(error, "unknowns: no form, no room, or %d of them", count);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     x = gproj_system_values(form->system);
-    for (i = 0; i < count; ++i) {
+    for (i = 0; i < count; ++i)
         if (first < 0 || i > INT32_MAX - first || !gproji_find_unit(form, first + i, &offset, &factor))
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
                                "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
                                (int64_t)first + i);
-    }
     for (i = 0; i < count; ++i) {
         gproji_find_unit(form, first + i, &offset, &factor);
         values[i] = offset + factor * x[first + i];
@@ -21217,17 +20971,13 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     int32_t t, row = -1, made = 0;
     size_t room = 3 * (size_t)gproji_max(count, 0);
     if (!part) return -1;
-    if (count < 0 || (count > 0 && !terms)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group, "%s: a row of %d terms, or no list",
-                    part->rule->name, count);
-        return -1;
-    }
-    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place)) {
-        gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
-                    "%s: there is no %s %d, and -1 is none", part->rule->name, gproji_place_word(part->rule->place),
-                    element);
-        return -1;
-    }
+    if (count < 0 || (count > 0 && !terms))
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                                       "%s: a row of %d terms, or no list", part->rule->name, count));
+    if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place))
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
+                                       "%s: there is no %s %d, and -1 is none", part->rule->name,
+                                       gproji_place_word(part->rule->place), element));
     inside = (gproj_term *)gproji_take(&form->own, room, sizeof *inside);
     if (!inside) gproji_fail_memory(&form->error);
     gproji_sum_add_product(&sum, form->scale, constant);
@@ -21261,9 +21011,7 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
     gproj_place place;
     int32_t groups;
     gproji_error_clear(error);
-    if (!form || !per_element)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "residuals: no form, or no room for them");
+    if (!form || !per_element) return gproji_refuse(error, "residuals: no form, or no room for them");
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     groups = gproj_system_group_count(form->system);
     if (group < 0 || group >= groups)
@@ -23868,9 +23616,8 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     hash = gproji_hash_doubles(hash, &form->scale, 1);
     hash = gproji_hash_variables(hash, form->system);
     /* 2. Groups. */
-    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+    for (i = 0; i < gproj_system_group_count(form->system); ++i)
         if (gproji_own_of(form, i) == GPROJI_OWN_NONE) hash = gproji_hash_group(hash, gproji_group_at(form->system, i));
-    }
     /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
         if (part->rule->own != GPROJI_OWN_NONE) continue;
@@ -23923,9 +23670,8 @@ GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t siz
     gproji_error_clear(error);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (!buffer || size != gproj_state_size(form))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
-                           (int64_t)gproj_state_size(form));
+        return gproji_refuse(error, "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
+                             (int64_t)gproj_state_size(form));
     return gproji_write_state(form, (uint8_t *)buffer, size, error);
 }
 
@@ -23948,10 +23694,9 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
     if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
-        return gproji_fail(
-            error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-            "state: it belongs to another form: the mesh that it was made from, or what was added to it, "
-            "is not the same");
+        return gproji_refuse(error,
+                             "state: it belongs to another form: the mesh that it was made from, or what was added to "
+                             "it, is not the same");
     in.size -= GPROJI_STATE_TAIL;
     /* 2. Check all of it before any is read: a checksum does not tell numbers out of range. */
     check = in;
@@ -24265,7 +24010,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->variables = (int32_t)n;
     drag->state_size = gproj_state_size(form);
     list->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *list->start);
-    list->vertex = (int32_t *)gproji_pool_take(pool, entries, sizeof *list->vertex);
+    list->vertex = gproji_take_ints(pool, entries);
     list->weight = (double *)gproji_pool_take(pool, entries, sizeof *list->weight);
     list->from = (double *)gproji_pool_take(pool, m, sizeof *list->from);
     list->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *list->gram);
@@ -24279,13 +24024,11 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->lift = (double *)gproji_pool_take(pool, m * m, sizeof *drag->lift);
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
-    drag->name = (int32_t *)gproji_pool_take(pool, m, sizeof *drag->name);
+    drag->name = gproji_take_ints(pool, m);
     drag->schedule =
         (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->schedule);
     drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
-    return list->start && list->vertex && list->weight && list->from && list->gram && drag->first && drag->begun &&
-           drag->last && drag->base && drag->held && drag->wanted && drag->motion && drag->lift && drag->pull &&
-           drag->work && drag->name && drag->schedule && drag->state;
+    return !pool->failed;
 }
 
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
@@ -24353,16 +24096,13 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
         return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                            "drag: the forces have no values yet, solve the form before or set them");
     if (options && !(options->residual_bound >= 0))
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                           "drag: a residual bound of %g is not >= 0", options->residual_bound);
+        return gproji_refuse(error, "drag: a residual bound of %g is not >= 0", options->residual_bound);
     if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "drag: there are no handles");
+        return gproji_refuse(error, "drag: there are no handles");
     for (k = 0; k < h->count; ++k) {
         int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
         double size = 0;
-        if (e < 0 || e > end)
-            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                               "drag: the list of handle %d is no list", k);
+        if (e < 0 || e > end) return gproji_refuse(error, "drag: the list of handle %d is no list", k);
         for (; e < end; ++e) {
             double weight = h->weight ? h->weight[e] : 1;
             if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count)
