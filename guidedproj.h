@@ -23293,7 +23293,9 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
     hooks->least = !gproji_is_on(form, form->planarity);
-    if (smooth) hooks->settle = gproji_settle_form; /* without local unknowns, too: steps are judged by their ends then */
+    /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold with
+       whole faces where it does not with straight steps. */
+    if (smooth && (loop->earlier > 0 || gproji_is_on(form, form->planarity))) hooks->settle = gproji_settle_form;
     if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
         hooks->inspect = gproji_inspect_corners;
         hooks->wake = gproji_wake_corners;
