@@ -40,14 +40,14 @@ clean 'examples/roof.obj is not the roof of planarize.c' "$(paste "$work/roof.ob
     { half = NF / 2; for (k = 1; k <= half; ++k) { d = $k - $(k + half); if ($1 != $(1 + half) || d * d > 1e-20) { print; next } } }')"
 # Problem files give the same meshes, step by step as examples/problems/steps.txt says: all that the examples write, but for
 # those that it names with a reason. The tool has the examples' library, so that no compiler's option comes between.
-differ() { # differ FILE OTHER: a complaint, unless all vertices agree to 1e-12 mean edge lengths, and all else exactly
-    paste -d '|' "$1" "$2" | awk -F '|' '
+differ() { # differ FILE OTHER MOST: a complaint, unless all vertices agree to MOST mean edge lengths, and all else exactly
+    paste -d '|' "$1" "$2" | awk -F '|' -v most="$3" '
         { n = split($1, a, " "); m = split($2, b, " "); if (n != m || a[1] != b[1]) { print "line " NR " differs"; exit bad = 1 } }
         a[1] != "v" && $1 != $2 { print "line " NR " differs"; exit bad = 1 }
         a[1] == "v" { for (k = 2; k < 5; ++k) { p[++c] = a[k]; d = a[k] - b[k]; if (d < 0) d = -d; if (d > far) far = d } }
         a[1] == "f" { for (k = 2; k <= n; ++k) { i = 3 * a[k]; j = 3 * a[k < n ? k + 1 : 2]; ++edges
             sum += sqrt((p[i] - p[j])^2 + (p[i - 1] - p[j - 1])^2 + (p[i - 2] - p[j - 2])^2) } }
-        END { if (!bad && !(far <= 1e-12 * sum / edges)) print "vertices differ by up to " far }'
+        END { if (!bad && !(far <= most * sum / edges)) print "vertices differ by up to " far }'
 }
 steps=$root/examples/problems/steps.txt
 mkdir "$work/again"
@@ -69,7 +69,11 @@ for mesh in "$work"/*.obj; do
     name=$(basename "$mesh")
     grep -qE "^[a-z_]+ $name - ." "$steps" && continue
     [ -f "$work/again/$name" ] || { fail "$name: no problem file of steps.txt makes it"; continue; }
-    clean "$name is another mesh than the one of the problem file" "$(differ "$mesh" "$work/again/$name")"
+    most=1e-12
+    # Numbers in these problem files are results of solves, whose last digits depend on the vector unit: up to 1e-10 after the
+    # next solve, between AVX2 and AVX-512.
+    case $name in boundary_fill_?.obj | courtyard_c.obj | drag_vertex.obj) most=1e-9 ;; esac
+    clean "$name is another mesh than the one of the problem file" "$(differ "$mesh" "$work/again/$name" $most)"
 done
 for expected in "$root"/tests/expected/*.txt; do
     [ -f "$expected" ] || continue
