@@ -22762,7 +22762,7 @@ GPROJI_INTERNAL void gproji_tell_straight_side(const gproj_form *form, const dou
 
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
    would not explain it. */
-GPROJI_INTERNAL void gproji_tell_held(gproj_form *form, gproj_result *result) {
+GPROJI_INTERNAL void gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
@@ -22958,6 +22958,7 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     char *text = result->message;
     gproji_damages d;
     int32_t kind;
+    bool known;
     gproji_find_damages(mesh, x, form->original, &d);
     result->spoiled = gproji_spoiled_of(&d);
     if (result->outcome != GPROJ_CONVERGED &&
@@ -22967,7 +22968,11 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         gproji_format(text + length, size - length,
                       "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
     if (shrunk < 0.2 || result->spoiled.total == 0) return;
-    /* All kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge ...". */
+    /* The reason, if it is known; all kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge
+       ..."; advice, if there is no reason. */
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
+    known = strlen(text) > length;
+    length = strlen(text);
     length = gproji_append(text, size, length, "; but the mesh is spoiled: ", 27);
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
         int32_t count = d.count[kind], at = d.first[kind];
@@ -22983,7 +22988,7 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         length = strlen(text);
         between = ", ";
     }
-    if (length + sizeof help <= size) gproji_append(text, size, length, help, sizeof help - 1);
+    if (!known && length + sizeof help <= size) gproji_append(text, size, length, help, sizeof help - 1);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
@@ -23317,7 +23322,6 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
-    if (result->outcome == GPROJ_CONVERGED && result->spoiled.total > 0) gproji_tell_held(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
