@@ -22654,12 +22654,26 @@ enum {
     GPROJI_HELD_MOST = 64 /* vertices of a face that are looked at */
 };
 
+/* Writes the unit normal of the area of a fan of points about the origin. False if the area is small beside the
+   distances: rounding would turn the normal of points along a line. */
+GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], double normal[3]) {
+    static const double none[3] = {0, 0, 0};
+    double squares = 0, area[3];
+    int32_t k;
+    gproji_copy3(none, normal);
+    for (k = 1; k < count; ++k) {
+        gproji_cross3(offset[k - 1], offset[k], area);
+        gproji_add_scaled3(1, area, normal);
+        squares += gproji_dot3(offset[k], offset[k]);
+    }
+    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, none);
+}
+
 /* How far the held vertices of a face are from the plane that is normal to their area; *count: how many there are. 0 if
-   the area is small beside the distances: rounding would turn the normal of vertices along a line. */
+   they lie along a line. */
 GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
                                         int32_t *count) {
-    static const double none[3] = {0, 0, 0};
-    double offset[GPROJI_HELD_MOST][3], normal[3] = {0, 0, 0}, squares = 0, mean = 0, most = 0;
+    double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
     const double *first = NULL;
     int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
     for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
@@ -22669,95 +22683,181 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
         gproji_sub3(value + v, first, offset[held_count++]);
     }
     *count = held_count;
-    for (k = 2; k < held_count; ++k) {
-        double area[3];
-        gproji_cross3(offset[k - 1], offset[k], area);
-        gproji_add_scaled3(1, area, normal);
-        squares += gproji_dot3(offset[k], offset[k]);
-    }
-    if (held_count < 4 || gproji_length3(normal) < 0.01 * squares || !gproji_normalise3(normal, none)) return 0;
+    if (held_count < 4 || !gproji_fan_normal(held_count, offset, normal)) return 0;
     for (k = 0; k < held_count; ++k) mean += gproji_dot3(normal, offset[k]) / held_count;
     for (k = 0; k < held_count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, offset[k]) - mean));
     return most;
 }
 
-/* Two planes through one line meet along it only. So where the boundary is held along a line, all faces beside it share
-   one plane (or lose their inner edges), and with a corner at each end of the line also the sides that go on there. */
+/* Planes spread. Three corners of a flat quad span its plane, unless they lie along a line. So the plane of a face with
+   three held vertices takes in every quad with three corners there, held ones or those of quads before; with a
+   boundary along a plane curve and a corner that has one face it takes in all. If it meets a vertex that is held
+   elsewhere, no flat faces can keep their corners; nor can they bear loads, if it takes in a loaded vertex with all
+   neighbours. A vertex that glides is in the plane if the whole side is, from one held vertex to the next. */
+typedef struct gproji_spread {
+    const gproj_form *form;
+    double *held;        /* 3 per vertex: is it held; the last plane that it was looked at for, negative if it is not
+                            in that one; the queue of vertices in the plane that are not held */
+    const double *value; /* 3 per vertex: the place of a held one */
+    double point[3], normal[3];
+    int32_t plane;  /* number of this one, from 1 */
+    int32_t count;  /* vertices in the queue */
+    int32_t vertex; /* held, and the farthest off the plane of those that it meets; -1: none is, */
+    double off;     /* and how far */
+} gproji_spread;
 
-static const double gproji_side_turn = 1e-6; /* sine of the turn at a vertex that is on a straight side */
-static const double gproji_side_bend = 1e-3; /* mean edges; turns of that sine cannot explain so much */
+static const double gproji_plane_near = 1e-6, gproji_plane_far = 1e-3; /* mean edges; in the plane, and certainly not */
+enum {
+    GPROJI_PLANES_MOST = 256 /* that are looked at */
+};
 
-/* Writes the point that boundary vertex v keeps: prescribed, or the original one of a vertex that glides along a straight
-   side, which stands for all on that side. False: v may go elsewhere. */
-GPROJI_INTERNAL bool gproji_kept_point(const gproj_form *form, const double *held, const double *value, int32_t v,
-                                       double out[3]) {
-    const double *h = held + 3 * (size_t)v;
-    bool all = h[0] + h[1] + h[2] == 3;
-    gproji_copy3((all ? value : form->original) + 3 * (size_t)v, out);
-    return all || gproji_rule_is_on(form, &gproji_gliding_boundary_rule);
+GPROJI_INTERNAL bool gproji_stays(const gproji_spread *s, int32_t v) { return s->held[3 * (size_t)v] > 0; }
+
+/* The place of a vertex: that at which it is held, or the one at the beginning. */
+GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v) {
+    return (gproji_stays(s, v) ? s->value : s->form->original) + 3 * (size_t)v;
 }
 
-/* Is the boundary straight where half-edge h begins, with three edges there? */
-GPROJI_INTERNAL bool gproji_is_straight(const gproj_form *form, const double *held, const double *value, int32_t h) {
-    const gproj_mesh *mesh = form->mesh;
-    double point[3][3], a[3], b[3], turn[3];
-    int32_t vertex[3] = {mesh->origin[mesh->prev[h]], mesh->origin[h], mesh->origin[mesh->next[h]]}, ring[4], k;
-    if (gproj_mesh_one_ring(mesh, vertex[1], ring, 4) != 3) return false;
-    for (k = 0; k < 3; ++k)
-        if (!gproji_kept_point(form, held, value, vertex[k], point[k])) return false;
-    gproji_sub3(point[1], point[0], a);
-    gproji_sub3(point[2], point[1], b);
-    gproji_cross3(a, b, turn);
-    return gproji_dot3(a, b) > 0 && gproji_length3(turn) <= gproji_side_turn * gproji_length3(a) * gproji_length3(b);
+GPROJI_INTERNAL double gproji_off_plane(const gproji_spread *s, int32_t v) {
+    double offset[3];
+    gproji_sub3(gproji_place_of(s, v), s->point, offset);
+    return fabs(gproji_dot3(offset, s->normal));
 }
 
-/* How far the sides before and after a straight one are from a common plane with it. The straight one begins with
-   boundary half-edge h, *end becomes the last vertex. 0: it is not straight, or nothing is known of the sides beside. */
-GPROJI_INTERNAL double gproji_side_bends(const gproj_form *form, const double *held, const double *value, int32_t h,
-                                         int32_t *end) {
-    static const double none[3] = {0, 0, 0};
-    const gproj_mesh *mesh = form->mesh;
-    double point[4][3], side[2][3], axis[3], normal[3];
-    int32_t vertex[4], e = mesh->next[h], ring[4], k;
-    for (; e != h && gproji_is_straight(form, held, value, e); e = mesh->next[e]) continue;
-    vertex[0] = mesh->origin[mesh->prev[h]], vertex[1] = mesh->origin[h];
-    vertex[2] = *end = mesh->origin[e], vertex[3] = mesh->origin[mesh->next[e]];
-    if (e == mesh->next[h] || e == h) return 0;
-    for (k = 0; k < 4; ++k) {
-        const double *fixed = held + 3 * (size_t)vertex[k];
-        bool corner = k == 1 || k == 2, all = fixed[0] + fixed[1] + fixed[2] == 3;
-        if (!gproji_kept_point(form, held, value, vertex[k], point[k])) return 0;
-        if (corner && (!all || gproj_mesh_one_ring(mesh, vertex[k], ring, 4) != 2)) return 0;
-        if (!corner && !all && !gproji_is_straight(form, held, value, k == 0 ? mesh->prev[h] : mesh->next[e])) return 0;
+/* Notes for all vertices that glide along the side with boundary half-edge h whether the whole side is in the plane. */
+GPROJI_INTERNAL void gproji_look_along(gproji_spread *s, int32_t h) {
+    const gproj_mesh *mesh = s->form->mesh;
+    int32_t first = mesh->prev[h], last = h, e;
+    bool in;
+    while (first != h && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
+    while (mesh->next[last] != first && !gproji_stays(s, mesh->origin[last])) last = mesh->next[last];
+    in = gproji_off_plane(s, mesh->origin[last]) <= gproji_plane_near;
+    for (e = first; e != last; e = mesh->next[e])
+        in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
+    for (e = last;; e = mesh->prev[e]) {
+        if (!gproji_stays(s, mesh->origin[e])) s->held[3 * (size_t)mesh->origin[e] + 1] = in ? s->plane : -s->plane;
+        if (e == first) break;
     }
-    gproji_sub3(point[2], point[1], axis);
-    gproji_sub3(point[0], point[1], side[0]);
-    gproji_sub3(point[3], point[2], side[1]);
-    gproji_cross3(axis, side[0], normal);
-    if (!gproji_normalise3(normal, none)) return 0;
-    return fabs(gproji_dot3(normal, side[1]));
 }
 
-/* Names a straight side of the boundary that keeps the faces beside it from being flat. */
-GPROJI_INTERNAL void gproji_tell_straight_side(const gproj_form *form, const double *held, const double *value,
-                                               gproj_result *result) {
+/* Must the vertex be in the plane? */
+GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
+    double *looked = &s->held[3 * (size_t)v + 1];
+    if (fabs(*looked) == s->plane) return *looked > 0;
+    *looked = -s->plane;
+    if (gproji_stays(s, v))
+        *looked = gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
+    else if (gproj_mesh_is_boundary_vertex(s->form->mesh, v) &&
+             gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule))
+        gproji_look_along(s, s->form->mesh->vertex_halfedge[v]);
+    return *looked > 0;
+}
+
+/* Takes the other vertices of a face with three corners in the plane into it. */
+GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
+    const gproj_mesh *mesh = s->form->mesh;
+    double offset[GPROJI_HELD_MOST][3], normal[3];
+    const double *first = NULL;
+    int32_t h = mesh->face_halfedge[face], in = 0, c;
+    for (c = 0; c < mesh->face_degree[face] && in < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
+        if (!gproji_is_in_plane(s, mesh->origin[h])) continue;
+        if (!first) first = gproji_place_of(s, mesh->origin[h]);
+        gproji_sub3(gproji_place_of(s, mesh->origin[h]), first, offset[in++]);
+    }
+    if (in < 3 || !gproji_fan_normal(in, offset, normal)) return;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
+        int32_t v = mesh->origin[h];
+        double off;
+        if (gproji_is_in_plane(s, v)) continue;
+        if (!gproji_stays(s, v)) {
+            s->held[3 * (size_t)v + 1] = s->plane;
+            s->held[3 * (size_t)s->count++ + 2] = v;
+        } else if (off = gproji_off_plane(s, v), off > gproji_plane_far && off > s->off) {
+            s->off = off, s->vertex = v;
+        }
+    }
+}
+
+/* Finds the plane of a face by the places of those that are held or glide, and spreads it as far as it goes. */
+GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
+    const gproj_mesh *mesh = s->form->mesh;
+    bool glides = gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule);
+    double offset[GPROJI_HELD_MOST][3];
+    int32_t h = mesh->face_halfedge[face], kept = 0, c, head;
+    s->count = 0, s->vertex = -1, s->off = 0;
+    for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
+        int32_t v = mesh->origin[h];
+        if (!gproji_stays(s, v) && !(glides && gproj_mesh_is_boundary_vertex(mesh, v))) continue;
+        if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
+        gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
+    }
+    if (kept < 3 || s->plane == GPROJI_PLANES_MOST || !gproji_fan_normal(kept, offset, s->normal)) return;
+    s->plane++;
+    gproji_spread_to(s, face);
+    for (head = 0; head < s->count; ++head) {
+        int32_t start = mesh->vertex_halfedge[(int32_t)s->held[3 * (size_t)head + 2]];
+        h = start;
+        do {
+            if (mesh->face[h] >= 0 && mesh->face_degree[mesh->face[h]] == 4) gproji_spread_to(s, mesh->face[h]);
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+    }
+}
+
+/* A vertex without support whose load, 3 numbers per vertex, leaves the plane that all its edges are in; -1: none. */
+GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *load) {
+    const gproj_mesh *mesh = s->form->mesh;
+    int32_t k;
+    for (k = 0; k < s->count; ++k) {
+        int32_t v = (int32_t)s->held[3 * (size_t)k + 2], start = mesh->vertex_halfedge[v], h = start;
+        const double *own = load + 3 * (size_t)v;
+        if (s->form->statics->axes[v] != GPROJI_AXES ||
+            !(fabs(gproji_dot3(own, s->normal)) > gproji_plane_far * gproji_length3(own)))
+            continue;
+        do {
+            if (!gproji_is_in_plane(s, mesh->origin[h ^ 1])) break;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+        if (h == start && gproji_is_in_plane(s, mesh->origin[h ^ 1])) return v;
+    }
+    return -1;
+}
+
+/* Names a plane that spreads from held vertices and leaves no flat faces, or none that carry. */
+GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, const double *value, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
+    const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
     size_t length = strlen(result->message);
-    double worst = 0;
-    int32_t h, first = -1, last = -1, sides = 0;
-    for (h = 0; h < mesh->halfedge_count; ++h) {
-        double bend;
-        int32_t end;
-        if (mesh->face[h] >= 0 || gproji_is_straight(form, held, value, h)) continue;
-        bend = gproji_side_bends(form, held, value, h, &end);
-        sides += bend > gproji_side_bend;
-        if (bend > worst) worst = bend, first = mesh->origin[h], last = end;
+    int32_t v, f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
+    double off = 0;
+    gproji_spread s;
+    memset(&s, 0, sizeof s);
+    s.form = form, s.held = held, s.value = value;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *of = held + 3 * (size_t)v;
+        of[0] = of[0] + of[1] + of[2] == 3;
+        of[1] = of[2] = 0;
     }
-    if (sides == 0) return;
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; flat faces along the straight side from vertex %d to %d share one plane, but the next sides are %g "
-                  "mean edges off it%s: bend it, or let one of the two go",
-                  first, last, worst, sides > 1 ? ", and others likewise" : "");
+    if (statics) gproj_get_loads(form, statics->work, NULL);
+    for (f = 0; f < mesh->face_count; ++f) {
+        if (mesh->face_degree[f] < 4) continue;
+        gproji_spread_from(&s, f);
+        planes += s.vertex >= 0;
+        if (s.off > off) off = s.off, face = f, vertex = s.vertex;
+        if (!statics || loaded >= 0) continue;
+        loaded = gproji_find_unbearable(&s, statics->work);
+        if (loaded >= 0) loaded_face = f;
+    }
+    if (vertex >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
+                      "mean edges off it%s: let some of the held vertices go",
+                      face, vertex, off, planes > 1 ? ", and others likewise" : "");
+    else if (loaded >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
+                      "carry its load: let some of the held vertices go",
+                      loaded_face, loaded);
 }
 
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
@@ -22784,7 +22884,7 @@ GPROJI_INTERNAL void gproji_tell_held(const gproj_form *form, gproj_result *resu
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
     else if (gproji_is_on(form, form->planarity))
-        gproji_tell_straight_side(form, held, value, result);
+        gproji_tell_planes(form, held, value, result);
 }
 
 /* A vertex of a part of the mesh that has loads and no support; -1: none. */

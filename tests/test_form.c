@@ -1079,9 +1079,9 @@ static double gprojt_saddle(double x, double y) { return x * y; }
 static double gprojt_bump(double x, double y) { return 4 * x * x * (1 - x) * y * (1 - y) * (1 - y); }
 static double gprojt_arched(double x, double y) { return x * y + 0.3 * (x * (1 - x) + y * (1 - y)); }
 
-/* Flat faces along a straight side share one plane: sides that are askew at the ends of one leave none, whether the
+/* Flat quads beside sides in one plane share that plane: sides that are askew at the ends of one leave none, whether the
    boundary is fixed or glides. Sides in one plane, curved ones, and one that ends at a free vertex are not named. */
-GPROJT_TEST(straight_sides_are_named) {
+GPROJT_TEST(planes_that_spread_are_named) {
     static double (*const height[3])(double, double) = {gprojt_saddle, gprojt_bump, gprojt_arched};
     static const int32_t side[5] = {0, 1, 2, 3, 4}, next[5] = {0, 5, 10, 15, 20}, after[5] = {4, 9, 14, 19, 24};
     int k, glides;
@@ -1102,7 +1102,7 @@ GPROJT_TEST(straight_sides_are_named) {
             }
             result = gproj_solve(form, 20, NULL);
             if (k == 0) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
-            GPROJT_CHECK(!strstr(result.message, "flat faces along the straight side from vertex ") == (k > 0));
+            GPROJT_CHECK(!strstr(result.message, "flat faces that keep their corners share one plane from face ") == (k > 0));
             if (k == 0) GPROJT_CHECK(strstr(result.message, "and others likewise") != NULL);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
@@ -2402,7 +2402,7 @@ int main(void) {
     GPROJT_RUN(gauss_planes_turn_with_the_faces);
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
-    GPROJT_RUN(straight_sides_are_named);
+    GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);
