@@ -1109,6 +1109,38 @@ GPROJT_TEST(planes_that_spread_are_named) {
         }
 }
 
+/* A flat boundary spreads its plane over all flat quads, in which loads along the plane can be carried and others not,
+   unless the boundary is free or all vertices are supports. */
+GPROJT_TEST(planes_without_carriers_are_named) {
+    static const int32_t inner[9] = {6, 7, 8, 11, 12, 13, 16, 17, 18};
+    double point_load[75];
+    int k;
+    for (k = 0; k < 4; ++k) {
+        gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads;
+        gproj_supports supports;
+        gproj_result result;
+        int32_t ring[25], v;
+        memset(&loads, 0, sizeof loads);
+        memset(&supports, 0, sizeof supports);
+        memset(point_load, 0, sizeof point_load);
+        for (v = 0; v < 25; ++v)
+            if (gproj_mesh_is_boundary_vertex(mesh, v) || k == 3) ring[supports.count++] = v;
+        for (v = 0; v < 9; ++v) point_load[3 * inner[v] + (k == 1 ? 0 : 2)] = -1;
+        loads.point_load = point_load, supports.vertex = ring;
+        gproj_add_planarity(form, 1);
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        if (k != 2) gproj_add_fixed_boundary(form, 1);
+        result = gproj_solve(form, 40, NULL);
+        GPROJT_CHECK((strstr(result.message, "cannot carry its load") != NULL) == (k == 0));
+        if (k == 0) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
+        if (k == 0) GPROJT_CHECK(strstr(result.message, "share one plane from face ") != NULL);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
    bent more is named. */
 GPROJT_TEST(triangles_held_are_not_named) {
@@ -2403,6 +2435,7 @@ int main(void) {
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(planes_that_spread_are_named);
+    GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);
