@@ -2433,12 +2433,6 @@ GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capaci
     return moved;
 }
 
-/* Grows *block; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_reserve(gproji_heap *heap, void **block, size_t *capacity, size_t needed, size_t size) {
-    *block = gproji_grow(heap, *block, capacity, needed, size);
-    return needed <= *capacity;
-}
-
 /* A growing array of integers; zeros at first. */
 typedef struct gproji_ints {
     int32_t *data;
@@ -3395,11 +3389,6 @@ GPROJI_INLINE int32_t gproji_shape_left(gproji_shape shape, int32_t at) {
 GPROJI_INLINE ptrdiff_t gproji_shape_offset(gproji_shape shape, int32_t at) {
     int32_t first = gproji_shape_first(shape, at), block = shape.last < 0 ? GPROJI_BLOCK : GPROJI_CHUNK;
     return (ptrdiff_t)(at - shape.shift) * shape.stride - (ptrdiff_t)first * (at + 1 - ((first + block) >> 1));
-}
-
-/* Entries of a panel. */
-GPROJI_INTERNAL int64_t gproji_shape_entries(gproji_shape shape) {
-    return gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
 }
 
 /* Update matrices are symmetric. Little more than the lower triangle is stored, in strips of GPROJI_STRIP columns with
@@ -5652,7 +5641,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
         }
         front->end_position = at;
         GPROJ_ASSERT(column == front->first + front->width);
-        front->entries = gproji_shape_entries(shape);
+        front->entries = gproji_shape_offset(shape, shape.end) + gproji_shape_first(shape, shape.end);
         front->update_rows = gproji_round_up(front->below, GPROJI_BLOCK);
         front->side = out->side_size;
         out->values_size += front->entries;
@@ -7873,9 +7862,6 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
 /* A group for reading; callers change it by functions of this section. */
 GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t group) { return &s->group[group]; }
 
-/* Have the rows values of a solve or a drag? */
-GPROJI_INLINE bool gproji_is_evaluated(const gproj_system *s) { return s->evaluated; }
-
 /* Forbids or allows that anything is added, as during a solve; returns what was before. */
 GPROJI_INTERNAL bool gproji_hold(gproj_system *s, bool solving) {
     bool before = s->solving;
@@ -8169,10 +8155,12 @@ GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_
 /* Declares that a row has several variables of the block that begins with this one. */
 GPROJI_INLINE void gproji_join_block(gproj_system *s, int32_t first) { s->blocks.joined[first] = 1; }
 
-/* The largest |phi| of each of `count` elements, by the last evaluation; 0 for those without rows. */
-GPROJI_INTERNAL void gproji_worst_by_element(const gproj_system *s, int32_t group, int32_t count, double *worst) {
+/* The largest |phi| of each of `count` elements, by the last evaluation; 0 for those without rows. False: the rows have
+   no values of a solve or a drag. */
+GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t group, int32_t count, double *worst) {
     const gproji_group *g = &s->group[group];
     int32_t r;
+    if (!s->evaluated) return false;
     for (r = 0; r < count; ++r) worst[r] = 0;
     for (r = 0; r < g->row_count; ++r) {
         int32_t e = g->row[r].element;
@@ -8180,6 +8168,7 @@ GPROJI_INTERNAL void gproji_worst_by_element(const gproj_system *s, int32_t grou
         if (e < 0 || e >= count || !(g->row[r].weight > 0)) continue;
         worst[e] = phi <= DBL_MAX ? gproji_fmax(worst[e], phi) : HUGE_VAL;
     }
+    return true;
 }
 
 /* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
@@ -8459,11 +8448,6 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
     }
     s->changed = true;
     return GPROJ_OK;
-}
-
-/* Returns a row's weight, without the element's. */
-GPROJI_INLINE double gproji_own_weight(const gproji_group *g, int32_t row) {
-    return g->share ? g->share[row].own : g->row[row].weight;
 }
 
 /* Gives the group's elements weights: all 1. */
@@ -10370,12 +10354,6 @@ GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
-/* Factors I + W W', and takes the right-hand sides along if there is room for all. False: that is not possible. */
-GPROJI_INTERNAL bool gproji_schur_factor(gproj_system *s) {
-    int32_t sides = s->wide.acting < s->cholesky->batch ? s->wide.acting + 1 : 0;
-    return gproji_cholesky_factor_with(s->cholesky, gproji_schur_load_front, s, sides, s->schur.side) == GPROJ_FACTORED;
-}
-
 /* Solves for the multipliers, then for the step. */
 GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
@@ -10838,25 +10816,25 @@ GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
 /* Solves for the step dx with this eps. False when the matrix is not positive definite in floating point. */
 GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
-    int32_t wide = 0;
-    bool by_multipliers = s->schur.on, fused = false, factored;
-    if (by_multipliers) {
+    int32_t wide, sides;
+    bool by_multipliers = s->schur.on, factored;
+    if (by_multipliers)
         gproji_schur_assemble(s, epsilon);
-    } else {
+    else
         gproji_merit_gradient(s);
-        wide = gproji_step_sides(s);
-        fused = wide < s->cholesky->batch; /* right-hand sides go through the fronts while these are in the cache */
-    }
+    wide = by_multipliers ? s->wide.acting : gproji_step_sides(s);
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
-    factored = by_multipliers ? gproji_schur_factor(s)
-                              : gproji_factor_matrix(s, epsilon, false, fused ? wide + 1 : 0, s->vector.sides);
+    sides = wide < s->cholesky->batch ? wide + 1 : 0; /* go through the fronts while these are in the cache */
+    factored = by_multipliers ? gproji_cholesky_factor_with(s->cholesky, gproji_schur_load_front, s, sides,
+                                                            s->schur.side) == GPROJ_FACTORED
+                              : gproji_factor_matrix(s, epsilon, false, sides, s->vector.sides);
     loop->iteration.factorisations++;
     gproji_lap(loop, GPROJ_PHASE_FACTOR);
     if (!factored) return false;
     if (by_multipliers)
         gproji_schur_finish(s);
     else
-        gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, fused), GPROJI_REFINEMENTS);
+        gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, sides > 0), GPROJI_REFINEMENTS);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
@@ -13553,19 +13531,18 @@ GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32
 }
 
 GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3], int32_t line) {
-    void *block = reader->position;
+    size_t needed = reader->vertex_count + 1;
     if (reader->vertex_count >= (size_t)GPROJI_VERTICES_MAX)
         gproji_stop(reader, GPROJ_ERROR_SIZE, line, "more than %d vertices; split the mesh",
                     (int32_t)GPROJI_VERTICES_MAX);
     gproji_push(reader, &reader->vertex_line, line);
     if (reader->code) return;
-    if (!gproji_reserve(reader->heap, &block, &reader->position_capacity, reader->vertex_count + 1,
-                        3 * sizeof(double))) {
+    reader->position = (double *)gproji_grow(reader->heap, reader->position, &reader->position_capacity, needed,
+                                             3 * sizeof(double));
+    if (reader->position_capacity < needed)
         reader->code = gproji_fail_memory(reader->error);
-        return;
-    }
-    reader->position = (double *)block;
-    gproji_copy3(x, reader->position + 3 * reader->vertex_count++);
+    else
+        gproji_copy3(x, reader->position + 3 * reader->vertex_count++);
 }
 
 /* Appends a face; the caller appends the corners. */
@@ -13992,7 +13969,8 @@ GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path,
     size_t most = heap->hook.limit > GPROJI_TEXT_MAX ? heap->hook.limit : GPROJI_TEXT_MAX;
     int64_t got;
     for (;;) {
-        if (*size >= *capacity && !gproji_reserve(heap, text, capacity, *size + 65536, 1))
+        if (*size >= *capacity) *text = gproji_grow(heap, *text, capacity, *size + 65536, 1);
+        if (*size >= *capacity)
             return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1,
                                "'%s' is too large for the memory after %l bytes", gproji_quote_path(path, quote),
                                (int64_t)*size);
@@ -14106,12 +14084,12 @@ GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
 
 /* Makes room for `entries` entries; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
-    void *column = object->column, *weight = object->weight;
-    bool enough = gproji_reserve(&object->heap, &column, &object->column_capacity, entries, sizeof(int32_t)) &&
-                  gproji_reserve(&object->heap, &weight, &object->weight_capacity, entries, sizeof(double));
-    object->stencil.column = object->column = (int32_t *)column;
-    object->stencil.weight = object->weight = (double *)weight;
-    return enough;
+    gproj_stencil *stencil = &object->stencil;
+    stencil->column = object->column = (int32_t *)gproji_grow(&object->heap, object->column, &object->column_capacity,
+                                                              entries, sizeof(int32_t));
+    stencil->weight = object->weight = (double *)gproji_grow(&object->heap, object->weight, &object->weight_capacity,
+                                                             entries, sizeof(double));
+    return object->column_capacity >= entries && object->weight_capacity >= entries;
 }
 
 /* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
@@ -14614,14 +14592,14 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
 }
 
 /* ============================================================================================================
-   >>hierarchy   Closest items by a hierarchy of bounding boxes. Uses platform, memory.
+   >>hierarchy   Closest segments and triangles by a hierarchy of bounding boxes. Uses platform, memory, vector.
 
-   A binary tree with axis-parallel boxes over items 0..n-1 (segments, triangles), split at the median box centre along
-   the axis on which the node's centres spread most, down to leaves with at most four items; searched depth first, the
-   nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items once along each
-   axis and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same tree on any
-   machine. Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the items
-   item[begin..end-1]; two children differ by one item at most, so no path is longer than 32 nodes. */
+   A binary tree with axis-parallel boxes over items 0..n-1, all segments or all triangles, split at the median box
+   centre along the axis on which the node's centres spread most, down to leaves with at most four items; searched
+   depth first, the nearer child first (Goldsmith and Salmon 1987; Ericson 2005, chapter 6). Building sorts the items
+   once along each axis and then only splits sorted lists, so it takes O(n log n) steps for any input and gives the same
+   tree on any machine. Invariants: nodes stand in preorder, so the left child of node i is i + 1; a node covers the
+   items item[begin..end-1]; two children differ by one item at most, so no path is longer than 32 nodes. */
 typedef struct gproji_node {
     double low[3], high[3];
     int32_t begin, end;
@@ -14629,6 +14607,9 @@ typedef struct gproji_node {
 } gproji_node;
 
 typedef struct gproji_hierarchy {
+    const double *point;   /* 3 numbers each, the caller's */
+    const int32_t *vertex; /* `corners` for each triangle; NULL: segment i runs from point i to point i + 1 */
+    int32_t corners;       /* 2: segments, 3: triangles */
     int32_t item_count, node_count;
     int32_t *item;     /* item_count: a permutation */
     gproji_node *node; /* room for item_count */
@@ -14639,9 +14620,21 @@ enum {
     GPROJI_TREE_DEPTH = 64
 };
 
-/* An item's box; the squared distance between an item and a point. */
-typedef void (*gproji_item_box)(const void *user, int32_t item, double low[3], double high[3]);
-typedef double (*gproji_item_distance)(const void *user, int32_t item, const double point[3]);
+GPROJI_INLINE const double *gproji_item_corner(const gproji_hierarchy *tree, int32_t item, int32_t corner) {
+    int32_t at = tree->vertex ? tree->vertex[(size_t)tree->corners * (size_t)item + (size_t)corner] : item + corner;
+    return tree->point + 3 * (size_t)at;
+}
+
+GPROJI_INTERNAL void gproji_item_box(const gproji_hierarchy *tree, int32_t item, double low[3], double high[3]) {
+    int32_t c, k;
+    gproji_copy3(gproji_item_corner(tree, item, 0), low);
+    gproji_copy3(low, high);
+    for (c = 1; c < tree->corners; ++c)
+        for (k = 0; k < 3; ++k) {
+            low[k] = gproji_fmin(low[k], gproji_item_corner(tree, item, c)[k]);
+            high[k] = gproji_fmax(high[k], gproji_item_corner(tree, item, c)[k]);
+        }
+}
 
 /* -- building -- */
 
@@ -14733,13 +14726,14 @@ GPROJI_INTERNAL void gproji_grow_hierarchy(gproji_hierarchy *tree, gproji_hierar
     }
 }
 
-/* Builds the tree over `count` >= 1 items; `keep` holds the arrays. False when there is no memory. */
+/* Builds the tree over `count` >= 1 items; `keep` holds its arrays. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy *tree, int32_t count,
-                                            gproji_item_box item_box, const void *user) {
+                                            const double *point, const int32_t *vertex) {
     gproji_hierarchy_work work;
     gproji_pool pool;
     int32_t i, axis;
     bool complete;
+    tree->point = point, tree->vertex = vertex, tree->corners = vertex ? 3 : 2;
     tree->item_count = count, tree->node_count = 0;
     tree->item = gproji_take_ints(keep, count);
     tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
@@ -14750,7 +14744,7 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy 
     for (axis = 0; axis < 3; ++axis) work.order[axis] = gproji_take_ints(&pool, count);
     complete = !keep->failed && !pool.failed;
     if (complete) {
-        for (i = 0; i < count; ++i) item_box(user, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
+        for (i = 0; i < count; ++i) gproji_item_box(tree, i, work.box + 6 * (size_t)i, work.box + 6 * (size_t)i + 3);
         for (axis = 0; axis < 3; ++axis) gproji_sort_axis(&work, count, axis);
         gproji_grow_hierarchy(tree, &work);
         /* within a leaf the three lists differ in order only, so any of them will do */
@@ -14761,71 +14755,6 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy 
 }
 
 /* -- searching -- */
-
-/* The squared distance between a point and a node's box, reduced by more than rounding can add, so that no item as near
-   as the best is missed. */
-GPROJI_INLINE double gproji_box_distance(const gproji_node *node, const double point[3]) {
-    double sum = 0;
-    int32_t axis;
-    for (axis = 0; axis < 3; ++axis) {
-        double below = node->low[axis] - point[axis], above = point[axis] - node->high[axis];
-        double d = gproji_fmax(gproji_fmax(below, above), 0.0);
-        sum += d * d;
-    }
-    return sum * (1 - 1e-13);
-}
-
-/* The item nearest to a point; among equally near ones that with the lowest number. */
-GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, const double point[3],
-                                                 gproji_item_distance distance, const void *user) {
-    int32_t stack_node[GPROJI_TREE_DEPTH], depth = 0, best_item = -1, i;
-    double stack_distance[GPROJI_TREE_DEPTH], best = DBL_MAX, here = 0;
-    int32_t at = 0;
-    for (;;) {
-        const gproji_node *node = &tree->node[at];
-        /* 1. Descend to the nearer child; the other one waits on the stack. */
-        if (here <= best && node->right >= 0) {
-            int32_t near_child = at + 1, far_child = node->right;
-            double near_distance = gproji_box_distance(&tree->node[near_child], point);
-            double far_distance = gproji_box_distance(&tree->node[far_child], point);
-            if (far_distance < near_distance) {
-                double d = near_distance;
-                near_distance = far_distance, far_distance = d;
-                far_child = near_child, near_child = node->right;
-            }
-            stack_node[depth] = far_child, stack_distance[depth] = far_distance;
-            ++depth;
-            at = near_child, here = near_distance;
-            continue;
-        }
-        /* 2. Compare the items in a leaf, unless the box is farther than the best so far. */
-        for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
-            double d = distance(user, tree->item[i], point);
-            if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
-                best = d;
-                best_item = tree->item[i];
-            }
-        }
-        if (!depth) break;
-        --depth;
-        at = stack_node[depth], here = stack_distance[depth];
-    }
-    return best_item < 0 ? 0 : best_item; /* a point that is not finite is not near to anything */
-}
-
-/* ============================================================================================================
-   >>curve   Polylines and their closest points. Uses platform, memory, error, vector, mesh, hierarchy.
-
-   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats the first point at the end); every
-   tangent is a unit vector: a segment without length has the tangent of the segment before it. */
-struct gproj_curve {
-    gproji_heap heap; /* first: see gproji_create_object */
-    gproji_pool pool; /* all arrays */
-    int32_t segment_count;
-    double *point;         /* 3 * (segment_count + 1) */
-    double *tangent;       /* 3 * segment_count */
-    gproji_hierarchy tree; /* over the segments */
-};
 
 /* Writes the point a + t (b - a), 0 <= t <= 1, nearest to p to `out`; returns t. A point that is not finite gives t =
    0. */
@@ -14852,21 +14781,126 @@ GPROJI_INLINE double gproji_square_distance3(const double a[3], const double b[3
     return gproji_dot3(d, d);
 }
 
-GPROJI_INTERNAL void gproji_segment_box(const void *user, int32_t item, double low[3], double high[3]) {
-    const double *a = ((const gproj_curve *)user)->point + 3 * (size_t)item, *b = a + 3;
+/* The point in a triangle nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
+GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
+                                                  double weight[3]) {
+    double ab[3], ac[3], ap[3], n[3], q[3], w[3] = {0, 0, 0}, square, scale, best = DBL_MAX, d, t;
     int32_t k;
-    for (k = 0; k < 3; ++k) {
-        low[k] = gproji_fmin(a[k], b[k]);
-        high[k] = gproji_fmax(a[k], b[k]);
+    bool sure, inside = false;
+    /* 1. Barycentric coordinates w for the orthogonal projection to the plane, if the triangle has an area. */
+    gproji_sub3(corner[1], corner[0], ab);
+    gproji_sub3(corner[2], corner[0], ac);
+    gproji_sub3(p, corner[0], ap);
+    gproji_cross3(ab, ac, n);
+    square = gproji_dot3(n, n);
+    scale = gproji_fmax(gproji_dot3(ab, ab), gproji_dot3(ac, ac));
+    if (square > 1e-28 * scale * scale) {
+        gproji_cross3(ap, ac, q);
+        w[1] = gproji_dot3(q, n) / square;
+        gproji_cross3(ab, ap, q);
+        w[2] = gproji_dot3(q, n) / square;
+        w[0] = 1 - w[1] - w[2];
+        inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
     }
+    /* signs beyond 1e-9 can be trusted if the triangle is no needle and p not far away */
+    sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
+    gproji_set3(1, 0, 0, weight);
+    if (inside) gproji_copy3(w, weight);
+    for (k = 0; k < 3; ++k)
+        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
+    if (inside) best = gproji_square_distance3(out, p);
+    if (inside && sure) return best;
+    /* 2. Edges that separate the projection from the triangle; if that is not sure, all three. */
+    for (k = 0; k < 3; ++k) {
+        int32_t following = k < 2 ? k + 1 : 0, opposite = k > 0 ? k - 1 : 2;
+        if (sure && w[opposite] > 1e-9) continue;
+        t = gproji_closest_on_segment(corner[k], corner[following], p, q);
+        d = gproji_square_distance3(q, p);
+        if (!(d < best)) continue;
+        best = d;
+        gproji_copy3(q, out);
+        gproji_set3(0, 0, 0, weight);
+        weight[k] = 1 - t;
+        weight[following] = t;
+    }
+    return best;
 }
 
-GPROJI_INTERNAL double gproji_segment_distance(const void *user, int32_t item, const double point[3]) {
-    const double *a = ((const gproj_curve *)user)->point + 3 * (size_t)item;
-    double out[3];
-    gproji_closest_on_segment(a, a + 3, point, out);
-    return gproji_square_distance3(out, point);
+/* The point in an item nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
+GPROJI_INTERNAL double gproji_closest_on_item(const gproji_hierarchy *tree, int32_t item, const double p[3], double out[3],
+                                              double weight[3]) {
+    const double *corner[3];
+    int32_t c;
+    for (c = 0; c < tree->corners; ++c) corner[c] = gproji_item_corner(tree, item, c);
+    if (tree->corners == 3) return gproji_closest_on_triangle(corner, p, out, weight);
+    weight[1] = gproji_closest_on_segment(corner[0], corner[1], p, out);
+    weight[0] = 1 - weight[1];
+    return gproji_square_distance3(out, p);
 }
+
+/* The squared distance between a point and a node's box, reduced by more than rounding can add, so that no item as near
+   as the best is missed. */
+GPROJI_INLINE double gproji_box_distance(const gproji_node *node, const double point[3]) {
+    double sum = 0;
+    int32_t axis;
+    for (axis = 0; axis < 3; ++axis) {
+        double below = node->low[axis] - point[axis], above = point[axis] - node->high[axis];
+        double d = gproji_fmax(gproji_fmax(below, above), 0.0);
+        sum += d * d;
+    }
+    return sum * (1 - 1e-13);
+}
+
+/* The item nearest to a point; among equally near ones that with the lowest number. */
+GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, const double point[3]) {
+    int32_t stack_node[GPROJI_TREE_DEPTH], depth = 0, best_item = -1, i;
+    double stack_distance[GPROJI_TREE_DEPTH], best = DBL_MAX, here = 0, out[3], weight[3];
+    int32_t at = 0;
+    for (;;) {
+        const gproji_node *node = &tree->node[at];
+        /* 1. Descend to the nearer child; the other one waits on the stack. */
+        if (here <= best && node->right >= 0) {
+            int32_t near_child = at + 1, far_child = node->right;
+            double near_distance = gproji_box_distance(&tree->node[near_child], point);
+            double far_distance = gproji_box_distance(&tree->node[far_child], point);
+            if (far_distance < near_distance) {
+                double d = near_distance;
+                near_distance = far_distance, far_distance = d;
+                far_child = near_child, near_child = node->right;
+            }
+            stack_node[depth] = far_child, stack_distance[depth] = far_distance;
+            ++depth;
+            at = near_child, here = near_distance;
+            continue;
+        }
+        /* 2. Compare the items in a leaf, unless the box is farther than the best so far. */
+        for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
+            double d = gproji_closest_on_item(tree, tree->item[i], point, out, weight);
+            if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
+                best = d;
+                best_item = tree->item[i];
+            }
+        }
+        if (!depth) break;
+        --depth;
+        at = stack_node[depth], here = stack_distance[depth];
+    }
+    return best_item < 0 ? 0 : best_item; /* a point that is not finite is not near to anything */
+}
+
+/* ============================================================================================================
+   >>curve   Polylines and their closest points. Uses platform, memory, error, vector, mesh, hierarchy.
+
+   Invariants: segment s runs from point s to point s + 1 (a closed curve repeats the first point at the end); every
+   tangent is a unit vector: a segment without length has the tangent of the segment before it. */
+struct gproj_curve {
+    gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
+    int32_t segment_count;
+    double *point;         /* 3 * (segment_count + 1) */
+    double *tangent;       /* 3 * segment_count */
+    gproji_hierarchy tree; /* over the segments */
+};
 
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve) {
     if (!curve) return;
@@ -14912,7 +14946,7 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
         last = curve->tangent + 3 * (size_t)from;
         for (s = 0, t = curve->tangent; s < count; last = t, ++s, t += 3)
             if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
-        if (gproji_hierarchy_build(&curve->pool, &curve->tree, count, gproji_segment_box, curve)) return curve;
+        if (gproji_hierarchy_build(&curve->pool, &curve->tree, count, curve->point, NULL)) return curve;
         gproji_fail_memory(error);
     } else if (valid) {
         gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
@@ -14978,15 +15012,15 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
 /* Without a curve or a point: segment -1 at infinite distance, and zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]) {
     gproj_curve_hit hit;
-    const double *a;
+    double weight[3];
     if (!curve || !point) {
         memset(&hit, 0, sizeof hit);
         hit.segment = -1, hit.distance = HUGE_VAL;
         return hit;
     }
-    hit.segment = gproji_hierarchy_closest(&curve->tree, point, gproji_segment_distance, curve);
-    a = curve->point + 3 * (size_t)hit.segment;
-    hit.parameter = gproji_closest_on_segment(a, a + 3, point, hit.point);
+    hit.segment = gproji_hierarchy_closest(&curve->tree, point);
+    gproji_closest_on_item(&curve->tree, hit.segment, point, hit.point, weight);
+    hit.parameter = weight[1];
     gproji_copy3(curve->tangent + 3 * (size_t)hit.segment, hit.tangent);
     hit.distance = gproji_distance3(hit.point, point);
     return hit;
@@ -15129,75 +15163,6 @@ GPROJI_INTERNAL void gproji_cut_face(gproj_surface *surface, gproji_polygon *pol
     gproji_cut(surface, polygon, face, polygon->prev[b], b, polygon->next[b]);
 }
 
-/* -- closest points -- */
-
-/* The point in a triangle nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
-GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3], const double p[3], double out[3],
-                                                  double weight[3]) {
-    double ab[3], ac[3], ap[3], n[3], q[3], w[3] = {0, 0, 0}, square, scale, best = DBL_MAX, d, t;
-    int32_t k;
-    bool sure, inside = false;
-    /* 1. Barycentric coordinates w for the orthogonal projection to the plane, if the triangle has an area. */
-    gproji_sub3(corner[1], corner[0], ab);
-    gproji_sub3(corner[2], corner[0], ac);
-    gproji_sub3(p, corner[0], ap);
-    gproji_cross3(ab, ac, n);
-    square = gproji_dot3(n, n);
-    scale = gproji_fmax(gproji_dot3(ab, ab), gproji_dot3(ac, ac));
-    if (square > 1e-28 * scale * scale) {
-        gproji_cross3(ap, ac, q);
-        w[1] = gproji_dot3(q, n) / square;
-        gproji_cross3(ab, ap, q);
-        w[2] = gproji_dot3(q, n) / square;
-        w[0] = 1 - w[1] - w[2];
-        inside = w[0] > 0 && w[1] > 0 && w[2] > 0;
-    }
-    /* signs beyond 1e-9 can be trusted if the triangle is no needle and p not far away */
-    sure = square > 1e-8 * scale * scale && gproji_dot3(ap, ap) < 1e4 * scale;
-    gproji_set3(1, 0, 0, weight);
-    if (inside) gproji_copy3(w, weight);
-    for (k = 0; k < 3; ++k)
-        out[k] = corner[0][k] + weight[1] * (corner[1][k] - corner[0][k]) + weight[2] * (corner[2][k] - corner[0][k]);
-    if (inside) best = gproji_square_distance3(out, p);
-    if (inside && sure) return best;
-    /* 2. Edges that separate the projection from the triangle; if that is not sure, all three. */
-    for (k = 0; k < 3; ++k) {
-        int32_t following = k < 2 ? k + 1 : 0, opposite = k > 0 ? k - 1 : 2;
-        if (sure && w[opposite] > 1e-9) continue;
-        t = gproji_closest_on_segment(corner[k], corner[following], p, q);
-        d = gproji_square_distance3(q, p);
-        if (!(d < best)) continue;
-        best = d;
-        gproji_copy3(q, out);
-        gproji_set3(0, 0, 0, weight);
-        weight[k] = 1 - t;
-        weight[following] = t;
-    }
-    return best;
-}
-
-GPROJI_INLINE void gproji_triangle_corners(const gproj_surface *surface, int32_t item, const double *corner[3]) {
-    int32_t k;
-    for (k = 0; k < 3; ++k) corner[k] = surface->position + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k];
-}
-
-GPROJI_INTERNAL void gproji_triangle_box(const void *user, int32_t item, double low[3], double high[3]) {
-    const double *corner[3];
-    int32_t k;
-    gproji_triangle_corners((const gproj_surface *)user, item, corner);
-    for (k = 0; k < 3; ++k) {
-        low[k] = gproji_fmin(gproji_fmin(corner[0][k], corner[1][k]), corner[2][k]);
-        high[k] = gproji_fmax(gproji_fmax(corner[0][k], corner[1][k]), corner[2][k]);
-    }
-}
-
-GPROJI_INTERNAL double gproji_triangle_distance(const void *user, int32_t item, const double point[3]) {
-    const double *corner[3];
-    double out[3], weight[3];
-    gproji_triangle_corners((const gproj_surface *)user, item, corner);
-    return gproji_closest_on_triangle(corner, point, out, weight);
-}
-
 /* -- the object -- */
 
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface) {
@@ -15249,7 +15214,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     /* 2. Triangles, and the hierarchy over them. */
     for (f = 0; complete && f < mesh->face_count; ++f) gproji_cut_face(surface, &polygon, mesh, f);
     gproji_pool_give_all(&pool);
-    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, gproji_triangle_box, surface))
+    if (complete && gproji_hierarchy_build(keep, &surface->tree, triangles, surface->position, surface->triangle))
         return surface;
     gproji_fail_memory(error);
     gproj_surface_destroy(surface);
@@ -15259,15 +15224,13 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
 /* Without a surface or a point: face -1 at infinite distance, and zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]) {
     gproj_surface_hit hit;
-    const double *corner[3];
     double weight[3], ab[3], ac[3];
     int32_t item, k;
     memset(&hit, 0, sizeof hit);
     hit.face = -1, hit.distance = HUGE_VAL;
     if (!surface || !point) return hit;
-    item = gproji_hierarchy_closest(&surface->tree, point, gproji_triangle_distance, surface);
-    gproji_triangle_corners(surface, item, corner);
-    gproji_closest_on_triangle(corner, point, hit.point, weight);
+    item = gproji_hierarchy_closest(&surface->tree, point);
+    gproji_closest_on_item(&surface->tree, item, point, hit.point, weight);
     hit.distance = gproji_distance3(hit.point, point);
     hit.face = surface->triangle_face[item];
     /* The interpolated normal; the triangle's if vertex normals cancel; up if the triangle has no area. */
@@ -15275,8 +15238,9 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
         gproji_add_scaled3(weight[k], surface->normal + 3 * (size_t)surface->triangle[3 * (size_t)item + (size_t)k],
                            hit.normal);
     if (!(gproji_dot3(hit.normal, hit.normal) > 1e-12)) {
-        gproji_sub3(corner[1], corner[0], ab);
-        gproji_sub3(corner[2], corner[0], ac);
+        const double *corner = gproji_item_corner(&surface->tree, item, 0);
+        gproji_sub3(gproji_item_corner(&surface->tree, item, 1), corner, ab);
+        gproji_sub3(gproji_item_corner(&surface->tree, item, 2), corner, ac);
         gproji_cross3(ab, ac, hit.normal);
     }
     gproji_normalise3(hit.normal, gproji_up);
@@ -17713,33 +17677,23 @@ GPROJI_INTERNAL bool gproji_polygon_meets(const double *xy, int32_t count, int32
     return gproji_segments_meet(xy, i, b, j, d);
 }
 
-/* A closed polygon in the plane. */
-typedef struct gproji_ring2 {
-    const double *xy;
-    int32_t count;
-} gproji_ring2;
-
-GPROJI_INTERNAL void gproji_ring_box(const void *user, int32_t item, double low[3], double high[3]) {
-    const gproji_ring2 *ring = (const gproji_ring2 *)user;
-    const double *p = ring->xy + 2 * (size_t)item, *q = ring->xy + 2 * (size_t)((item + 1) % ring->count);
-    gproji_set3(gproji_fmin(p[0], q[0]), gproji_fmin(p[1], q[1]), 0, low);
-    gproji_set3(gproji_fmax(p[0], q[0]), gproji_fmax(p[1], q[1]), 0, high);
-}
-
 /* Finds the first two sides of a closed polygon that meet; first = count if it is simple. False without memory. */
 GPROJI_INTERNAL bool gproji_find_crossing(gproji_heap *heap, const double *xy, int32_t count, int32_t *first,
                                           int32_t *second) {
     gproji_hierarchy tree;
-    gproji_ring2 ring;
     gproji_pool pool;
+    double *point;
+    int32_t i;
     bool built;
-    ring.xy = xy, ring.count = count;
     gproji_pool_start(&pool, heap);
-    built = gproji_hierarchy_build(&pool, &tree, count, gproji_ring_box, &ring);
+    point = (double *)gproji_pool_take(&pool, (int64_t)count + 1, 3 * sizeof(double));
+    for (i = 0; point && i <= count; ++i)
+        gproji_set3(xy[2 * (size_t)(i % count)], xy[2 * (size_t)(i % count) + 1], 0, point + 3 * (size_t)i);
+    built = gproji_hierarchy_build(&pool, &tree, count, point, NULL);
     for (*first = 0, *second = count; built && *first < count; ++*first) {
         int32_t stack[GPROJI_TREE_DEPTH], depth = 1, k;
         double low[3], high[3];
-        gproji_ring_box(&ring, *first, low, high);
+        gproji_item_box(&tree, *first, low, high);
         stack[0] = 0;
         while (depth > 0) {
             int32_t at = stack[--depth];
@@ -17980,9 +17934,9 @@ GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
 }
 
 GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    void *block = f->flat;
-    if (!gproji_reserve(f->heap, &block, &f->flat_capacity, (size_t)f->vertices + 1, 2 * sizeof(double))) return false;
-    f->flat = (double *)block;
+    size_t needed = (size_t)f->vertices + 1;
+    f->flat = (double *)gproji_grow(f->heap, f->flat, &f->flat_capacity, needed, 2 * sizeof(double));
+    if (f->flat_capacity < needed) return false;
     f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
     ++f->vertices;
     return true;
@@ -20915,7 +20869,7 @@ GPROJI_INTERNAL gproji_part *gproji_callers_part(gproj_form *form, int32_t group
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user) {
     gproji_part *part = gproji_callers_part(form, group);
-    void *block = part ? form->unknowns.block : NULL;
+    size_t needed;
     gproji_unknowns *u;
     int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
     if (!part) return -1;
@@ -20923,9 +20877,10 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                                        "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
                                        part->rule->name, count));
-    if (!gproji_reserve(&form->own, &block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u))
-        return gproji_none(gproji_fail_memory(&form->error));
-    form->unknowns.block = (gproji_unknowns *)block;
+    needed = (size_t)form->unknowns.count + 1;
+    form->unknowns.block = (gproji_unknowns *)gproji_grow(&form->own, form->unknowns.block, &form->unknowns.capacity,
+                                                          needed, sizeof *u);
+    if (form->unknowns.capacity < needed) return gproji_none(gproji_fail_memory(&form->error));
     u = &form->unknowns.block[form->unknowns.count];
     u->value = (double *)gproji_take(&form->own, (size_t)count, sizeof *u->value);
     if (!u->value) gproji_fail_memory(&form->error);
@@ -21022,11 +20977,9 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "residuals: the rows of group %d belong to the whole mesh, see gproj_form_group_info",
                            group);
-    if (!gproji_is_evaluated(form->system))
-        return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                           "residuals: the form has not been solved since something was added");
-    gproji_worst_by_element(form->system, group, gproji_element_count(form->mesh, place), per_element);
-    return GPROJ_OK;
+    if (gproji_worst_by_element(form->system, group, gproji_element_count(form->mesh, place), per_element)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                       "residuals: the form has not been solved since something was added");
 }
 
 /* ============================================================================================================
@@ -21287,12 +21240,6 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 
 /* -- making the statics of a form -- */
 
-GPROJI_INTERNAL double *gproji_copy_numbers(gproji_pool *pool, const double *numbers, int64_t count) {
-    double *copy = (double *)gproji_pool_take(pool, count, sizeof *copy);
-    if (copy && count) memcpy(copy, numbers, (size_t)count * sizeof *copy);
-    return copy;
-}
-
 /* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
 GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
                                                  const gproj_supports *supports) {
@@ -21341,8 +21288,8 @@ GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *
     s->group = -1;
     s->load_scale = 1;
     s->loads = *loads;
-    if (loads->edge_density) s->edge_density = gproji_copy_numbers(&s->pool, loads->edge_density, edges);
-    if (loads->point_load) s->point_load = gproji_copy_numbers(&s->pool, loads->point_load, 3 * vertices);
+    if (loads->edge_density) s->edge_density = (double *)gproji_pool_copy(&s->pool, loads->edge_density, edges, sizeof(double));
+    if (loads->point_load) s->point_load = (double *)gproji_pool_copy(&s->pool, loads->point_load, vertices, 3 * sizeof(double));
     s->loads.edge_density = s->edge_density;
     s->loads.point_load = s->point_load;
     s->axes = (uint8_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->axes);
