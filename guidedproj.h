@@ -582,7 +582,7 @@ enum {
 };
 
 GPROJ_API gproj_schedule gproj_keep(double weight);               /* the same weight in all iterations */
-GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last); /* until iteration `last`, then none */
+GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last); /* the same until iteration `last`, then none */
 /* The weight while wishes guide a solve, then none: in forms the first half of the iterations (smooth: at most 10; with
    forces at most 9), in systems all. Constraints and bounds keep it. */
 GPROJ_API gproj_schedule gproj_guide(double weight);
@@ -593,15 +593,15 @@ typedef struct gproj_term {
     double a;
 } gproj_term;
 
-/* How far a solve is, for refresh callbacks. */
+/* The state of a solve, for refresh callbacks. */
 typedef struct gproj_progress {
     int32_t iteration;  /* the last one that began, from 1; 0: none has */
     int32_t iterations; /* the limit */
-    int32_t settling;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From 2
-                           on a refresh should not switch between pieces (of a curve, say): else it may do so for ever */
+    int32_t settling;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From
+                           2 on a refresh should not switch between pieces (of a curve), or it may do so for ever */
     bool tangential;    /* nearest: steps follow the constraints away from the start, and may be long */
-    bool trial;         /* x is the end of a step that may still be taken back: the rows are to fit it, but what a refresh
-                           keeps from call to call should depend on accepted steps only */
+    bool trial;         /* x is the end of a step that may still be taken back: the rows are to fit it, but what a
+                           refresh keeps from call to call should depend on accepted steps only */
 } gproj_progress;
 
 /* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
@@ -660,14 +660,14 @@ typedef enum gproj_outcome {
 
 /* One iteration; given to the callback after it. */
 typedef struct gproj_iteration {
-    int32_t number;   /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
-    double residual;  /* largest |phi| over rows that must hold with weight > 0, after the step */
-    double merit;     /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
-    double energy;    /* the wishes' part of the merit */
-    double step;      /* largest |dx| */
-    double epsilon;   /* the regularisation used */
-    double length;    /* the part of the step that was taken: 1, or another if the merit asked for it */
-    int32_t factorisations; /* 1, or more if the step was damped, guarded or met bounds */
+    int32_t number;  /* from 1, through all attempts; numbers are skipped if no step is found before a schedule ends */
+    double residual; /* largest |phi| over rows that must hold with weight > 0, after the step */
+    double merit;    /* sum of w^2 phi^2 over constraints, bounds and wishes, after the step */
+    double energy;   /* the wishes' part of the merit */
+    double step;     /* largest |dx| */
+    double epsilon;  /* the regularisation used */
+    double length;   /* the part of the step that was taken: 1, or another if the merit asked for it */
+    int32_t factorisations;            /* 1, or more if the step was damped, guarded or met bounds */
     double optimality;                 /* nearest: see gproj_result */
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
@@ -955,8 +955,9 @@ GPROJ_API int32_t gproj_edit_edge(gproj_edit *edit, int32_t vertex, int32_t othe
    vertex. */
 GPROJ_API int32_t gproj_edit_split_edge(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
-/* Cuts a face by a diagonal between two corners. `face` is then the part with the first corner; the other part is the
-   last face. Refused if the corners have an edge already. Returns the new edge. */
+/* Cuts a face by a diagonal between two corners. The part with the face's first corner keeps the number `face`, the
+   other part is the last face. Refused if the corners have an edge already. Returns the new edge, whose half-edge 2 *
+   edge goes from `vertex` to `other`, or -1. */
 GPROJ_API int32_t gproj_edit_split_face(gproj_edit *edit, int32_t face, int32_t vertex, int32_t other,
                                         gproj_error *error);
 
@@ -1116,13 +1117,13 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
-/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
+/* The closest point. Without a curve or a point: segment -1, infinite distance, zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
 /* The mesh's faces, cut into triangles. Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
-/* The closest point. Without an object or a point: segment or face -1, infinite distance, zeros. */
+/* The closest point. Without a surface or a point: face -1, infinite distance, zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1293,10 +1294,12 @@ GPROJ_API int32_t gproj_add_fixed_corners(gproj_form *form, double weight);
 GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32_t *vertices, const double *positions,
                                     double weight);
 GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const double *positions);
-/* The vertices stay on the curve. 3 rows each, anew in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the
-   line through the closest segment (u, w orthogonal to it, p on it; paper 3.3), and, with weight only if v_i would
-   leave the curve's end or the segments around a corner, t'(v_i - p) = 0 pins it there (t along the segment). Vertices
-   walk from segment to segment, and settle on one after the wishes have faded. The curve must outlive the form. */
+/* These vertices (0, NULL: all) lie on a curve in the mesh's units and glide along it; they need not begin on it. 3
+   rows each, linearised in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the line through the closest
+   segment (u, w orthogonal to it, p on it; paper 3.3). t'(v_i - p) = 0 (t along the segment) pins it, with a weight
+   only while it would run beyond an end of the curve or is closest to a corner between segments. Vertices walk from
+   segment to segment; two iterations after the wishes have faded each keeps its segment. The curve must outlive the
+   form. Returns the group, or -1 after an error. */
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight);
 /* Every boundary vertex glides along the original boundary loop; corners stay. */
@@ -1351,8 +1354,8 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
    triangles from their first corner, which is exact for planar ones. One global row, linearised anew in each
    iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
-/* The face areas |a_k| (vectorial areas) sum to `area`, in the mesh's units squared. One global row, linearised anew in
-   each iteration, and as all rows below in mean edge lengths: the side of a square with this area. */
+/* The face areas |a_k| (vectorial areas) sum to `area`, in the mesh's units squared. One global row, linearised in each
+   iteration. Like all rows below it is measured in mean edge lengths, here by the side of a square with this area. */
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight);
 /* length_price * (length of all edges) + area_price * (area of all faces) = cost. Prices per unit of the mesh's lengths
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
@@ -1424,7 +1427,8 @@ typedef void (*gproj_start)(void *user, const gproj_mesh *mesh, int32_t first, i
    then, or is NULL. States keep them like the library's. */
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user);
-/* Reads such unknowns in the mesh's units. `error` may be NULL; a refused call changes nothing. */
+/* Reads unknowns first .. first + count - 1 as the last solve has left them, in the mesh's units; coordinates 3 v + c
+   of vertices, too. `error` may be NULL; a refused call changes nothing. */
 GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t first, int32_t count, double *values,
                                              gproj_error *error);
 /* Adds the row phi = sum of the terms + constant to a group of gproj_add_rows; returns the row's number in it, or -1.
@@ -1436,10 +1440,9 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
                                      double constant, int32_t element);
 /* -- groups: residuals and weights -- */
 
-/* What each element of the group's place lacks after a solve, by the last evaluation: the largest |phi| of these rows, of
-   bounds the violation, in mean edge lengths; 0 without rows. Refuses groups whose place is none of vertex, edge and
-   face, and forms that were not solved. per_element: a number for each vertex, edge or face of the mesh; `error` may be
-   NULL. */
+/* The residual at each element after a solve: the largest |phi| among the element's rows, for bounds the violation, in
+   mean edge lengths; 0 where it has no rows. per_element: a number for each vertex, edge or face of the mesh, as the
+   group's place says. Refuses groups with another place, and forms that were not solved. `error` may be NULL. */
 GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group, double *per_element,
                                           gproj_error *error);
 
@@ -1460,11 +1463,12 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from the end of the first, or from the positions that you have set since. Positions are written
-   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. The system's values
-   for vertices, normals and axes are overwritten at the beginning; variables of your own keep theirs. "The original"
-   for fixed vertices, gliding boundaries and closeness is always the mesh at gproj_form_create. If no wish guides,
-   closeness to the original with weight 0.03 * 0.3^n, n <= 5, is added (options: skip_closeness). After an error
-   nothing is written.
+   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. At the beginning
+   vertices, normals, axes and the unknowns of gproj_form_add_unknowns get their values anew; variables of
+   gproj_system_add_variables, and the forces of an earlier solve, keep theirs. "The original" for fixed vertices,
+   gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish guides, closeness to
+   the positions at the beginning of this solve is added, with the weight 0.03 * 0.3^n up to iteration 5, or half of
+   the iterations if that is less (options: skip_closeness).
 
    If only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness, steps
    are found by the constraints' multipliers, provided that these are clearly fewer than the variables. With fairness,
@@ -1486,9 +1490,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
    - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, and edges
-     when they become shorter than 0.2 of their length, for 50 iterations or half of a smaller limit, in place of the
-     guard: faces stay convex and upright where they were. The rows come as they are needed, as the group "corners". If
-     no step is found with them they are let go; gproj_result.spoiled counts the damage.
+     when they become shorter than 0.2 of their length, in place of the guard: faces stay convex and upright where they
+     were. The rows come as they are needed, as the group "corners". If no step is found with them, or after half of
+     the iterations and at most 50 (not with a limit of 50 or fewer), they are let go; gproj_result.spoiled counts the
+     damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
      most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
      (gproj_solve_begin).
@@ -1519,13 +1524,12 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
                                  gproj_error *error);
-/* The bytes that the form will hold at most while the solve that was begun runs, its own and its system's, told before
-   they are taken: the matrix is analysed, which the solve need not repeat, but neither the factor nor the arrays of
-   iterations are taken. The peak is no less than 0.7 of it, and no more unless many rows come in on the way: it is the
-   sum for the rows as they are, with 1/32 more for small work, or with 1/4 more for such rows (of the guard where steps
-   are found by multipliers, of corners in smooth solves). Compression that shapes resist has been seen to take 1.2 times
-   that. The mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a
-   callback asks, no memory for the analysis. */
+/* Foretells the bytes that the form and its system will hold at most while the solve that was begun runs. Analyses the
+   matrix, which the solve need not repeat, but takes neither the factor nor the arrays of iterations. The peak is
+   normally 0.7 to 1 of this number, which is the sum for the rows as they are, with 1/32 more for small work, or with
+   1/4 more for rows that come in on the way (of the guard where steps are found by multipliers, of corners in smooth
+   solves); compression that shapes resist has been seen to take 1.2. The mesh, curves and surfaces of yours are not in
+   it. 0 after an error (NULL: not told): no solve is on, a callback asks, no memory for the analysis. */
 GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
@@ -1541,13 +1545,13 @@ GPROJ_API void gproj_solve_stop(gproj_form *form);
    come out in that unit. Inside, both are normalised, so units do not change the shape. Edges between two pinned
    supports have no force: it would be undetermined. */
 
-/* Loads follow the shape: they are linearised anew in each iteration. */
+/* Gravity acts along -z. Loads follow the shape: they are linearised in each iteration. */
 typedef struct gproj_loads {
-    double density;             /* weight per length of every edge (rho A); half of it loads each end */
+    double density;             /* down, per length of every edge (rho A): half of the weight loads each end */
     const double *edge_density; /* edge_count numbers instead; NULL: `density` for all */
     double area_load;           /* down, per area of each face: an equal part on each corner */
     double snow;                /* down, per area of each face's projection to the ground */
-    const double *point_load;   /* 3 * vertex_count: a force on each vertex; NULL: none */
+    const double *point_load;   /* 3 * vertex_count: a force in x, y, z on each vertex (a weight: z < 0); NULL: none */
 } gproj_loads;
 
 /* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
@@ -1882,14 +1886,14 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 #define GPROJI_INDEX_MAX INT32_MAX
 #endif
 enum {
-    GPROJI_VERTICES_MAX = GPROJI_INDEX_MAX / 3 - 1,      /* in a mesh: 3 coordinates each */
-    GPROJI_CORNERS_MAX = GPROJI_INDEX_MAX / 2 - 1,       /* in all faces of a mesh: 2 half-edges each */
+    GPROJI_VERTICES_MAX = GPROJI_INDEX_MAX / 3 - 1, /* in a mesh: 3 coordinates each */
+    GPROJI_CORNERS_MAX = GPROJI_INDEX_MAX / 2 - 1,  /* in all faces of a mesh: 2 half-edges each */
     GPROJI_POLYLINE_VERTICES_MAX =
-        GPROJI_INDEX_MAX, /* in all polylines of a mesh; in an edit, whose room doubles, half */
-    GPROJI_INTS_MAX = GPROJI_INDEX_MAX - 1,              /* in a growing array */
-    GPROJI_VARIABLES_MAX = GPROJI_INDEX_MAX / 2,         /* of a system: a term's two variables */
-    GPROJI_ROWS_MAX = GPROJI_INDEX_MAX - 1,              /* in a group */
-    GPROJI_COLUMNS_MAX = GPROJI_INDEX_MAX - 64           /* of a matrix, with padding */
+        GPROJI_INDEX_MAX,                        /* in all polylines of a mesh; in an edit, whose room doubles, half */
+    GPROJI_INTS_MAX = GPROJI_INDEX_MAX - 1,      /* in a growing array */
+    GPROJI_VARIABLES_MAX = GPROJI_INDEX_MAX / 2, /* of a system: a term's two variables */
+    GPROJI_ROWS_MAX = GPROJI_INDEX_MAX - 1,      /* in a group */
+    GPROJI_COLUMNS_MAX = GPROJI_INDEX_MAX - 64   /* of a matrix, with padding */
 };
 #define GPROJI_TERMS_MAX (2 * (size_t)GPROJI_INDEX_MAX) /* uint32_t: terms, or row variables, in a group */
 
@@ -4353,8 +4357,8 @@ GPROJI_INTERNAL double gproji_rim(const gproji_graph *graph) {
     return count > 0 ? few * few / count : 0;
 }
 
-/* Takes the arrays, chooses the nodes that are dissected, and makes them the first part. total: the weight of all nodes.
-   False when there is no memory. */
+/* Takes the arrays, chooses the nodes that are dissected, and makes them the first part. total: the weight of all
+   nodes. False when there is no memory. */
 GPROJI_INTERNAL bool gproji_nd_begin(gproji_nd *nd, gproji_pool *pool, int32_t total) {
     const gproji_graph *graph = nd->graph;
     gproji_nd_nodes *c = &nd->copy[0], *other = &nd->copy[1];
@@ -4897,7 +4901,9 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
     return true;
 }
 
-/* A node's side by a minimum cut. In the band: 1 unless the lower side reaches the entry, 0 if it reaches the exit. */
+/* The side of node i by the minimum cut that `mark` names: 0 below, 1 above, 2 in the separator. Outside the band,
+   which ends at `high`, the coordinate decides; in the band the lower side reaches a node's exit (0), its entry only
+   (2), or neither (1). GPROJI_BAND_SINK marks what the upper side reaches instead. */
 GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut *cut, int32_t high, int32_t i,
                                        unsigned char mark) {
     const int32_t k = nd->number[i];
@@ -4908,7 +4914,8 @@ GPROJI_INTERNAL int32_t gproji_nd_side(const gproji_nd *nd, const gproji_nd_cut 
     return out ? 0 : in ? 2 : 1;
 }
 
-/* Estimates the part's cost if one of the minimum cuts divides it. */
+/* Estimates the flops that eliminate the part if the minimum cut that `mark` names divides it; `from`: the band's first
+   coordinate, and the first one above it. Overwrites halo->least with bits for the sides beside each halo node. */
 GPROJI_INTERNAL double gproji_nd_measure(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2],
                                          unsigned char mark) {
     double weight[3] = {0, 0, 0}, beside[2] = {0, 0};
@@ -5936,7 +5943,7 @@ typedef struct gproji_sweep {
 } gproji_sweep;
 
 struct gproj_cholesky {
-    gproji_heap own;
+    gproji_heap heap;
     gproj_parallel parallel;
     gproj_error error;
     bool analysed, factored;
@@ -5982,8 +5989,8 @@ GPROJ_API gproj_cholesky *gproj_cholesky_create(const gproj_host *host) {
     if (host) c->parallel = host->parallel;
     c->kernels = gproji_kernels_of(0);
     gproji_error_clear(&c->error);
-    gproji_pool_start(&c->kept, &c->own);
-    gproji_pool_start(&c->numeric, &c->own);
+    gproji_pool_start(&c->kept, &c->heap);
+    gproji_pool_start(&c->numeric, &c->heap);
     c->failed_column = -1;
     return c;
 }
@@ -6097,12 +6104,12 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
         columns += node_size[i];
     }
     graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
-    start = (int32_t *)gproji_take(&c->own, (size_t)node_count + 1, sizeof(int32_t));
+    start = (int32_t *)gproji_take(&c->heap, (size_t)node_count + 1, sizeof(int32_t));
     if (start) {
         start[0] = 0;
         for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
         c->analysed = gproji_cholesky_analyse_graph(c, &graph, &choice, start, NULL);
-        gproji_give(&c->own, start, (size_t)node_count + 1, sizeof(int32_t));
+        gproji_give(&c->heap, start, (size_t)node_count + 1, sizeof(int32_t));
     }
     if (c->analysed) return GPROJ_OK;
     gproji_cholesky_forget(c);
@@ -6314,7 +6321,7 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     if (options) choice = *options;
     memset(&x, 0, sizeof x);
     x.n = n;
-    gproji_pool_start(&x.pool, &c->own);
+    gproji_pool_start(&x.pool, &c->heap);
     code = gproji_compression_begin(&x, start, row, &choice, &c->error);
     if (choice.ordering == GPROJ_ORDERING_GIVEN)
         choice.ordering = GPROJ_ORDERING_NATURAL; /* nodes come in this order */
@@ -6490,9 +6497,9 @@ GPROJI_INTERNAL void gproji_enter_front(const gproj_cholesky *c, const gproji_fr
 
 /* -- sweeps over all fronts -- */
 
-/* Goes up through one task's fronts: eliminates them if there is a matrix to load, and solves L y = b with each, two
+/* Factors one task's fronts, from the leaves upwards, if there is a matrix to load, and solves L y = b with each, two
    right-hand sides at a time. A panel is read from memory once. */
-GPROJI_INTERNAL void gproji_forward_task(void *data, int32_t index) {
+GPROJI_INTERNAL void gproji_upward_task(void *data, int32_t index) {
     gproj_cholesky *c = (gproj_cholesky *)data;
     const gproji_symbolic *sy = &c->symbolic;
     const int32_t *level = sy->level_start + c->sweep.level;
@@ -6575,7 +6582,7 @@ GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load loa
     /* Tasks on one level run to their ends although one has failed, so that the answer does not depend on timing. */
     for (level = 0; level <= GPROJI_TASK_LEVELS && failed < 0; ++level) {
         c->sweep.level = level;
-        gproji_for(&c->parallel, start[level + 1] - start[level], gproji_forward_task, c);
+        gproji_for(&c->parallel, start[level + 1] - start[level], gproji_upward_task, c);
         for (t = start[level]; t < start[level + 1]; ++t)
             if (c->failed[t] >= 0 && (failed < 0 || c->failed[t] < failed)) failed = c->failed[t];
     }
@@ -6805,6 +6812,8 @@ typedef struct gproji_squares {
 
 GPROJI_INTERNAL bool gproji_squares_finite(double x) { return gproji_is_finite(x) && fabs(x) <= GPROJI_SQUARES_HUGE; }
 
+/* Refuses a problem with missing arrays, indices out of range or numbers beyond 1e50. Bounds are checked as they are
+   read, by gproji_squares_bound. */
 GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, const double *x, gproj_error *error) {
     int32_t i, j;
     int64_t e;
@@ -6845,9 +6854,9 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
     return GPROJ_OK;
 }
 
-/* Reads a bound as a finite number: `none`, -NONE or NONE, for NULL and the infinity on that side. Fails for NaN, the
-   other infinity, and numbers beyond 1e50. Infinities are told by their bits: comparisons may be compiled for finite
-   numbers only. */
+/* Reads entry j of an array of bounds: `none`, which is -NONE for lower and NONE for upper ones, if the array is NULL
+   or the entry is the infinity on that side. Fails for NaN, the other infinity, and numbers beyond 1e50. Infinities are
+   told by their bits: comparisons may be compiled for finite numbers only. */
 GPROJI_INTERNAL bool gproji_squares_bound(gproji_squares *s, const char *name, const double *bound, int32_t j,
                                           double none, double *out) {
     uint64_t bits;
@@ -7457,6 +7466,7 @@ GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream) {
     stream->exhausted = true;
 }
 
+/* The unsigned integer in up to 8 bytes, the lowest first. */
 GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
     uint64_t value = 0;
     int32_t i;
@@ -7626,7 +7636,7 @@ typedef struct gproji_multiplier {
     double y, rise;
 } gproji_multiplier;
 
-/* Partial merit and largest residual in one chunk, a part of a group's rows, at the last evaluation. */
+/* Partial merit and largest residual of the rows in one task, at the last evaluation. */
 typedef struct gproji_tally {
     double sum;     /* w^2 phi^2 */
     double largest; /* |phi| */
@@ -7813,16 +7823,16 @@ typedef struct gproji_room {
 } gproji_room;
 
 struct gproj_system {
-    gproji_heap own;
+    gproji_heap heap;
     gproj_error error;
     gproj_host host;
     gproj_cholesky *cholesky;
 
     int32_t variable_count;
     gproj_progress progress;
-    double stiffness; /* in steps: factor on the weights of metric groups; 0: they rest */
+    double stiffness;      /* in steps: factor on the weights of metric groups; 0: they rest */
     gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
-    double rounding;  /* tolerated rounding in a row's value; 0: as little as can be */
+    double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
     gproji_group *group;
@@ -7848,8 +7858,8 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
     gproj_system *s = (gproj_system *)gproji_create_object(host, sizeof(gproj_system), NULL);
     if (!s) return NULL;
     gproji_error_clear(&s->error);
-    gproji_pool_start(&s->taken, &s->own);
-    gproji_pool_start(&s->schur.pool, &s->own);
+    gproji_pool_start(&s->taken, &s->heap);
+    gproji_pool_start(&s->schur.pool, &s->heap);
     if (host) s->host = *host;
     s->cholesky = gproj_cholesky_create(host);
     if (!s->cholesky) {
@@ -7875,7 +7885,7 @@ GPROJI_INLINE bool gproji_is_solving(const gproj_system *s) { return s->solving;
 /* Two arrays for work, a number a variable, between solves of a compiled system: the step, and x before it. */
 GPROJI_INLINE double *gproji_spare(gproj_system *s, int32_t which) { return which ? s->vector.saved : s->vector.step; }
 
-/* Counts tasks in a group's evaluation. */
+/* The number of tasks that evaluate a group, for any number of threads; at least 1. */
 GPROJI_INLINE int32_t gproji_group_tasks(const gproji_group *g) { return g->row_count / GPROJI_ROWS_PER_TASK + 1; }
 
 /* Counts the locals in all rows. */
@@ -7936,17 +7946,17 @@ GPROJ_API void gproj_system_destroy(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i) s->group[i].local.sorted = false; /* nobody adds rows any more */
     gproji_system_forget(s);
     for (i = 0; i < s->group_count; ++i) {
-        gproji_give(&s->own, s->group[i].row, s->group[i].capacity.row, sizeof *s->group[i].row);
-        gproji_give(&s->own, s->group[i].share, s->group[i].capacity.share, sizeof *s->group[i].share);
-        gproji_give(&s->own, s->group[i].term, s->group[i].capacity.term, sizeof *s->group[i].term);
-        gproji_give(&s->own, s->group[i].local.variable, s->group[i].capacity.local, sizeof(int32_t));
+        gproji_give(&s->heap, s->group[i].row, s->group[i].capacity.row, sizeof *s->group[i].row);
+        gproji_give(&s->heap, s->group[i].share, s->group[i].capacity.share, sizeof *s->group[i].share);
+        gproji_give(&s->heap, s->group[i].term, s->group[i].capacity.term, sizeof *s->group[i].term);
+        gproji_give(&s->heap, s->group[i].local.variable, s->group[i].capacity.local, sizeof(int32_t));
     }
-    gproji_give(&s->own, s->group, s->capacity.group, sizeof *s->group);
-    gproji_give(&s->own, s->x, s->capacity.x, sizeof *s->x);
-    gproji_give(&s->own, s->blocks.first, s->capacity.block, sizeof *s->blocks.first);
-    gproji_give(&s->own, s->blocks.place, s->capacity.place, sizeof *s->blocks.place);
-    gproji_give(&s->own, s->blocks.joined, s->capacity.joined, sizeof *s->blocks.joined);
-    gproji_give(&s->own, s->blocks.auxiliary, s->capacity.auxiliary, sizeof *s->blocks.auxiliary);
+    gproji_give(&s->heap, s->group, s->capacity.group, sizeof *s->group);
+    gproji_give(&s->heap, s->x, s->capacity.x, sizeof *s->x);
+    gproji_give(&s->heap, s->blocks.first, s->capacity.block, sizeof *s->blocks.first);
+    gproji_give(&s->heap, s->blocks.place, s->capacity.place, sizeof *s->blocks.place);
+    gproji_give(&s->heap, s->blocks.joined, s->capacity.joined, sizeof *s->blocks.joined);
+    gproji_give(&s->heap, s->blocks.auxiliary, s->capacity.auxiliary, sizeof *s->blocks.auxiliary);
     gproj_cholesky_destroy(s->cholesky);
     gproji_destroy_object(s, sizeof *s);
 }
@@ -7973,7 +7983,7 @@ GPROJ_API gproj_memory gproj_system_memory(const gproj_system *s) {
     gproj_memory sum;
     memset(&sum, 0, sizeof sum);
     if (!s) return sum;
-    gproji_add_memory(&sum, s->own.account);
+    gproji_add_memory(&sum, s->heap.account);
     gproji_add_memory(&sum, gproj_cholesky_memory(s->cholesky));
     return sum;
 }
@@ -7983,11 +7993,11 @@ GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
     size_t wanted = (size_t)s->variable_count + count;
     gproji_blocks *b = &s->blocks;
     gproji_room *room = &s->capacity;
-    s->x = (double *)gproji_grow(&s->own, s->x, &room->x, wanted, sizeof *s->x);
-    b->first = (int32_t *)gproji_grow(&s->own, b->first, &room->block, wanted, sizeof *b->first);
-    b->place = (int32_t *)gproji_grow(&s->own, b->place, &room->place, wanted, sizeof *b->place);
-    b->joined = (uint8_t *)gproji_grow(&s->own, b->joined, &room->joined, wanted, sizeof *b->joined);
-    b->auxiliary = (uint8_t *)gproji_grow(&s->own, b->auxiliary, &room->auxiliary, wanted, sizeof *b->auxiliary);
+    s->x = (double *)gproji_grow(&s->heap, s->x, &room->x, wanted, sizeof *s->x);
+    b->first = (int32_t *)gproji_grow(&s->heap, b->first, &room->block, wanted, sizeof *b->first);
+    b->place = (int32_t *)gproji_grow(&s->heap, b->place, &room->place, wanted, sizeof *b->place);
+    b->joined = (uint8_t *)gproji_grow(&s->heap, b->joined, &room->joined, wanted, sizeof *b->joined);
+    b->auxiliary = (uint8_t *)gproji_grow(&s->heap, b->auxiliary, &room->auxiliary, wanted, sizeof *b->auxiliary);
     return room->x >= wanted && room->block >= wanted && room->place >= wanted && room->joined >= wanted &&
            room->auxiliary >= wanted;
 }
@@ -8068,11 +8078,11 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     }
     if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
     count = (size_t)s->group_count;
-    s->group = (gproji_group *)gproji_grow(&s->own, s->group, &s->capacity.group, count + 1, sizeof *s->group);
+    s->group = (gproji_group *)gproji_grow(&s->heap, s->group, &s->capacity.group, count + 1, sizeof *s->group);
     g = count < s->capacity.group ? &s->group[count] : NULL;
     if (g) {
         memset(g, 0, sizeof *g);
-        g->row = (gproji_row *)gproji_grow(&s->own, NULL, &g->capacity.row, 1, sizeof *g->row);
+        g->row = (gproji_row *)gproji_grow(&s->heap, NULL, &g->capacity.row, 1, sizeof *g->row);
     }
     if (!g || !g->row) {
         gproji_fail_memory(&s->error);
@@ -8228,10 +8238,10 @@ GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
     rows += (size_t)g->row_count + 1; /* with the one that ends them */
     terms += g->term_count, locals += gproji_local_count(g);
     terms += terms == 0, locals += locals == 0; /* a row without terms has arrays, too */
-    g->row = (gproji_row *)gproji_grow(&s->own, g->row, &room->row, rows, sizeof *g->row);
-    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &room->term, terms, sizeof *g->term);
-    g->local.variable = (int32_t *)gproji_grow(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
-    if (g->share) g->share = (gproji_share *)gproji_grow(&s->own, g->share, &room->share, rows, sizeof *g->share);
+    g->row = (gproji_row *)gproji_grow(&s->heap, g->row, &room->row, rows, sizeof *g->row);
+    g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &room->term, terms, sizeof *g->term);
+    g->local.variable = (int32_t *)gproji_grow(&s->heap, g->local.variable, &room->local, locals, sizeof(int32_t));
+    if (g->share) g->share = (gproji_share *)gproji_grow(&s->heap, g->share, &room->share, rows, sizeof *g->share);
     return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= rows);
 }
 
@@ -8377,7 +8387,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     int32_t r;
     for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
     if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
-    own = (gproj_term *)gproji_take(&s->own, count, sizeof *own);
+    own = (gproj_term *)gproji_take(&s->heap, count, sizeof *own);
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
@@ -8385,7 +8395,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
         row->term = row->source = (uint32_t)count;
         count += row->terms;
     }
-    gproji_give(&s->own, g->term, g->capacity.term, sizeof *g->term);
+    gproji_give(&s->heap, g->term, g->capacity.term, sizeof *g->term);
     g->term = own;
     g->term_count = g->sources = g->capacity.term = count;
     g->common = false;
@@ -8454,7 +8464,7 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
 GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
     int32_t r;
     if (g->share) return true;
-    g->share = (gproji_share *)gproji_take(&s->own, g->capacity.row, sizeof *g->share);
+    g->share = (gproji_share *)gproji_take(&s->heap, g->capacity.row, sizeof *g->share);
     if (!g->share) return false;
     g->capacity.share = g->capacity.row;
     for (r = 0; r < g->row_count; ++r) g->share[r].own = g->row[r].weight, g->share[r].factor = 1;
@@ -8566,9 +8576,9 @@ GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
         gproji_group *g = &s->group[i];
         gproji_group_room *room = &g->capacity;
         size_t rows = (size_t)g->row_count + 1, locals = gproji_local_count(g);
-        g->row = (gproji_row *)gproji_trim(&s->own, g->row, &room->row, rows, sizeof *g->row);
-        g->term = (gproj_term *)gproji_trim(&s->own, g->term, &room->term, g->term_count, sizeof *g->term);
-        g->local.variable = (int32_t *)gproji_trim(&s->own, g->local.variable, &room->local, locals, sizeof(int32_t));
+        g->row = (gproji_row *)gproji_trim(&s->heap, g->row, &room->row, rows, sizeof *g->row);
+        g->term = (gproj_term *)gproji_trim(&s->heap, g->term, &room->term, g->term_count, sizeof *g->term);
+        g->local.variable = (int32_t *)gproji_trim(&s->heap, g->local.variable, &room->local, locals, sizeof(int32_t));
         trimmed = trimmed && room->row == rows && room->term == g->term_count && room->local == locals;
     }
     nodes->of = gproji_take_ints(&s->taken, n);
@@ -8606,7 +8616,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
     int32_t *size, *adjacent = NULL, v;
     gproji_pool pool;
     bool done;
-    gproji_pool_start(&pool, &s->own);
+    gproji_pool_start(&pool, &s->heap);
     start = (int64_t *)gproji_pool_take(&pool, (int64_t)nodes + 1, sizeof *start);
     size = gproji_take_ints(&pool, nodes);
     done = !in->pool.failed && !pool.failed;
@@ -8616,7 +8626,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
         const uint32_t *rows_end = in->node_row + in->node_start[v + 1];
         size_t most = filled + 1; /* as if the node's rows had nothing in common; never none */
         for (row = rows; row < rows_end; ++row) most += row_start[*row + 1] - row_start[*row];
-        adjacent = (int32_t *)gproji_grow(&s->own, adjacent, &room, most, sizeof *adjacent);
+        adjacent = (int32_t *)gproji_grow(&s->heap, adjacent, &room, most, sizeof *adjacent);
         done = most <= room;
         if (!done) break;
         /* Lists the nodes in all rows at v, each once; v itself is not. */
@@ -8635,7 +8645,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
     gproji_pool_give_all(&in->pool); /* before the analysis, which needs much memory itself */
     if (done) start[nodes] = (int64_t)filled;
     if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
-    gproji_give(&s->own, adjacent, room, sizeof *adjacent);
+    gproji_give(&s->heap, adjacent, room, sizeof *adjacent);
     gproji_pool_give_all(&pool);
     return code;
 }
@@ -8656,7 +8666,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_whole(gproj_system *s) {
         return GPROJ_ERROR_SIZE;
     }
     memset(&in, 0, sizeof in);
-    gproji_pool_start(&in.pool, &s->own);
+    gproji_pool_start(&in.pool, &s->heap);
     in.node_count = s->nodes.count;
     in.row_start = (uint32_t *)gproji_pool_take(&in.pool, (int64_t)rows, sizeof *in.row_start);
     in.row_node = (int32_t *)gproji_pool_take(&in.pool, (int64_t)entries, sizeof *in.row_node);
@@ -8744,7 +8754,7 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
         return true;
     }
     if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
-    g->term = (gproj_term *)gproji_grow(&s->own, g->term, &g->capacity.term, wanted, sizeof *g->term);
+    g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &g->capacity.term, wanted, sizeof *g->term);
     if (g->capacity.term < wanted) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
     gproji_rename_terms(g->term + g->term_count, row->terms, locals, key);
@@ -8813,7 +8823,7 @@ GPROJI_INTERNAL bool gproji_compile_places(gproj_system *s) {
     gproji_pool pool;
     bool done;
     for (i = 0; i < s->group_count; ++i) all += s->group[i].row_count;
-    gproji_pool_start(&pool, &s->own);
+    gproji_pool_start(&pool, &s->heap);
     column = gproji_take_ints(&pool, s->variable_count);
     at = gproji_take_ints(&pool, s->variable_count);
     front = gproji_take_ints(&pool, all);
@@ -8886,7 +8896,7 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
 
 /* -- evaluation -- */
 
-/* Partial merit and largest residual in one chunk, for the weight `tallied`. */
+/* Partial merit and largest residual in one task, for the weight tally.weight. */
 GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     gproji_group *g = (gproji_group *)data;
     gproji_tally tally = {0, 0, -1};
@@ -8905,8 +8915,8 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally.part[task] = tally;
 }
 
-/* Evaluates phi and gradients in one chunk, a part of a group's rows. Rows without weight get zeros; a contiguous linear
-   row keeps its gradient. */
+/* Evaluates phi and gradients of a group's rows in one task. Rows without weight get zeros; a contiguous linear row
+   keeps its gradient. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
     gproji_group *g = s->group;
@@ -9484,7 +9494,7 @@ GPROJI_INTERNAL bool gproji_schur_decide(gproj_system *s) {
     bool enough, pays = true;
     if (gproji_schur_is_outnumbered(s, limit)) return true;
     for (i = 0; i < s->group_count; ++i) rows += s->group[i].row_count;
-    gproji_pool_start(&pool, &s->own);
+    gproji_pool_start(&pool, &s->heap);
     mark = gproji_take_ints(&pool, 3 * nodes);
     belongs = gproji_take_ints(&pool, rows);
     enough = !pool.failed;
@@ -9516,7 +9526,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_elements(gproj_system *s) {
         return GPROJ_ERROR_SIZE;
     }
     memset(&in, 0, sizeof in);
-    gproji_pool_start(&in.pool, &s->own);
+    gproji_pool_start(&in.pool, &s->heap);
     in.node_count = d->elements;
     in.row_count = (uint32_t)s->nodes.count;
     in.row_start = (uint32_t *)gproji_pool_take_zeroed(&in.pool, (int64_t)s->nodes.count + 2, sizeof(uint32_t));
@@ -9673,7 +9683,7 @@ GPROJI_INTERNAL bool gproji_place_elements(gproj_system *s) {
     int64_t k, l;
     gproji_pool pool;
     bool done;
-    gproji_pool_start(&pool, &s->own);
+    gproji_pool_start(&pool, &s->heap);
     at = gproji_take_ints(&pool, gproji_max(s->variable_count, d->first[d->elements]));
     sequence = gproji_take_ints(&pool, s->nodes.count);
     done = gproji_schur_take(s) && !s->taken.failed && !pool.failed;
@@ -10399,10 +10409,10 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
    so they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the
    agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or
-   falls short. Once it is small near a solution the metric rests and the last steps are Newton's; if such a step fails
-   the metric comes back, and from then on rests only when the merit falls tenfold in a step: until then the stiffness
-   finds the size that steps want between its least and 0, or they would creep with the least. A metric that is a
-   brake (in a form: changes of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
+   falls short. Once it is small near a solution the metric rests and the last steps are Newton's. If such a step fails
+   the metric comes back and rests again only when a step lowers the merit tenfold; until then k may fall below its
+   least, with which steps would be too short and creep. A metric that is a brake (in a form: changes of forces) acts
+   with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
    are, while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The
@@ -10433,25 +10443,25 @@ static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
 static const double gproji_stiffness_finest = 1e-6; /* after the metric has rested in vain, */
-static const double gproji_stiffness_left = 0.1; /* while steps leave more than this part of the merit */
-static const double gproji_stiffness_ends = 1e-7; /* residual below which stiffer steps are no help */
-static const double gproji_brake_most = 9;        /* of the stiffness above 1, for brakes */
-static const double gproji_settled = 1e-3;        /* residual below which refreshes may settle */
-static const double gproji_shortest = 0.125;      /* part of a step whose local unknowns are settled */
+static const double gproji_stiffness_left = 0.1;    /* while steps leave more than this part of the merit */
+static const double gproji_stiffness_ends = 1e-7;   /* residual below which stiffer steps are no help */
+static const double gproji_brake_most = 9;          /* of the stiffness above 1, for brakes */
+static const double gproji_settled = 1e-3;          /* residual below which refreshes may settle */
+static const double gproji_shortest = 0.125;        /* part of a step whose local unknowns are settled */
 /* A residual below the first that keeps more than the second part of itself from one look to the next creeps. */
 static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
 enum {
-    GPROJI_ATTEMPTS = 8,        /* steps with different eps in one iteration */
-    GPROJI_BOUND_ROUNDS = 3,    /* how often each is found again with other active bounds */
-    GPROJI_PATIENCE = 5,        /* iterations without progress before the loop stops, */
-    GPROJI_PATIENCE_STIFF = 12, /* and with a metric */
-    GPROJI_REFINEMENTS = 3,     /* rounds at most for systems with wide rows */
-    GPROJI_ACTIVATIONS = 4,     /* from then on no row of the guard is dormant */
-    GPROJI_VIOLATIONS = 3,      /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_LEAST = 50,     /* of more iterations safeguards get half, and so many at most, */
-    GPROJI_SAFE_LAST = 30,      /* and then so many more with the least that they may ask for */
+    GPROJI_ATTEMPTS = 8,         /* steps with different eps in one iteration */
+    GPROJI_BOUND_ROUNDS = 3,     /* how often each is found again with other active bounds */
+    GPROJI_PATIENCE = 5,         /* iterations without progress before the loop stops, */
+    GPROJI_PATIENCE_STIFF = 12,  /* and with a metric */
+    GPROJI_REFINEMENTS = 3,      /* rounds at most for systems with wide rows */
+    GPROJI_ACTIVATIONS = 4,      /* from then on no row of the guard is dormant */
+    GPROJI_VIOLATIONS = 3,       /* how often a step is found again with new rows of safeguards */
+    GPROJI_SAFE_MOST = 50,       /* of more iterations safeguards act in half, and in no more than this */
+    GPROJI_SAFE_LAST = 30,       /* iterations after that in which they ask for the least */
     GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
-    GPROJI_WARY = 4,            /* iterations with a cautious stiffness after a step has failed or was short */
+    GPROJI_WARY = 4,             /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
@@ -10523,8 +10533,8 @@ typedef struct gproji_loop {
     gproji_watch watch;
     bool stiff; /* metric groups have a weight in this solve */
     gproji_trust trust;
-    double shift;         /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum;         /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    double shift; /* nearest: of the last slide with curvature, times s^2 */
+    bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
 } gproji_loop;
 
 /* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
@@ -10563,7 +10573,7 @@ GPROJI_INTERNAL double gproji_now(const gproj_system *s) {
     return s->host.clock.now ? s->host.clock.now(s->host.clock.user) : 0;
 }
 
-/* Books the time since the last call to a phase. */
+/* Adds the time since the previous lap to the seconds of the phase that has just ended. */
 GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     double now = gproji_now(loop->system);
     loop->iteration.seconds[phase] += now - loop->time.lap;
@@ -10577,7 +10587,7 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
     return g->schedule.last;
 }
 
-/* The weight of a group in iteration n. */
+/* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
     if (g->role == GPROJI_BRAKE)
@@ -10854,8 +10864,8 @@ typedef struct gproji_course {
     const gproji_hinge *hinge;
 } gproji_course;
 
-/* M(t) along dx, for rows linearised at its beginning: phi + t h + t^2 q with h = grad phi'dx and q the products at
-   dx. */
+/* The merit M(t) at x + t dx as a polynomial. Each row is phi + t h + t^2 q with h = grad phi'dx and the quadratic form
+   q = 1/2 dx'H dx of its products; rows that a refresh linearises have none. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -10953,6 +10963,7 @@ GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
     return sum;
 }
 
+/* Gives local unknowns, normals and axes, their best values for x. */
 GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
     if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
 }
@@ -10966,7 +10977,8 @@ GPROJI_INTERNAL double gproji_try_merit(gproj_system *s) {
 }
 
 /* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is
-   above the merit without settling, which `course` knows, local unknowns stay as the step has made them. */
+   above the merit that `course` predicts without settling, the end is tried without as well, and the better one kept.
+   */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit = gproji_try_merit(s), plain;
@@ -11080,7 +11092,8 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
 /* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again.
    A row should act if the step would violate it by more than a part of the residual, in itself and linearised (the
    tangent of a convex row alone would say so too early); a row that acts already goes on until it holds the step back.
-   The guard looks at the end of the step, in the first round, and keeps its rows. */
+   Rows of the guard are looked at in round 0 only, by their true value, and stay on. If only rows of lazy groups have
+   changed, a step that lowers the merit to a tenth is kept. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
@@ -11237,7 +11250,8 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         stepped = loop->iteration.length > 0;
         if (!stepped) {
             gproji_step_back(s);
-            if (loop->trust.factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
+            if (loop->trust.factored && loop->hooks.settle)
+                gproji_linearise(loop); /* rows were linearised on the way */
         } else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) {
             loop->iteration.step = gproji_take_step(s, loop->iteration.length);
             gproji_settle(loop);
@@ -11284,7 +11298,8 @@ GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
     return go_on;
 }
 
-/* Do the constraints hold? */
+/* Do the constraints hold? The residual is of gproji_take_standing, the tolerance of gproji_see_rows; gproji_run_loop
+   and gproji_run_nearest decide by it. */
 GPROJI_INTERNAL bool gproji_holds(const gproji_loop *loop) { return loop->standing.residual <= loop->tolerance; }
 
 GPROJI_INTERNAL bool gproji_is_out_of_time(const gproji_loop *loop) {
@@ -11344,7 +11359,7 @@ GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
     }
     loop->watch.yield_at = INT32_MAX;
     if (!some) return false;
-    if (!last && loop->iterations > GPROJI_SAFE_LEAST)
+    if (!last && loop->iterations > GPROJI_SAFE_MOST)
         loop->watch.yield_at = gproji_min(loop->iterations, loop->result.iterations + GPROJI_SAFE_LAST);
     if (!last) s->yield = GPROJI_YIELD_LAST;
     if (loop->stiff) gproji_stiffen(loop, 1);
@@ -11354,14 +11369,15 @@ GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
     return true;
 }
 
-/* How far should safeguards give way in this solve? */
+/* The stage in which safeguards give way now. */
 GPROJI_INTERNAL gproji_yielding gproji_yield_of(const gproj_system *s) { return s->yield; }
 
 /* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
    are patient: they are made where this one has ended badly. */
 GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
     double residual = loop->standing.residual;
-    if (loop->result.iterations < loop->watch.seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system)) return;
+    if (loop->result.iterations < loop->watch.seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system))
+        return;
     if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen &&
         loop->system->yield == GPROJI_YIELD_SLOWLY)
         loop->system->yield = GPROJI_YIELD_FLOOR;
@@ -11936,8 +11952,8 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     loop->time.frame = -1;
     loop->epsilon_least = gproji_epsilon_min;
     loop->watch.yield_at = INT32_MAX;
-    if (iterations > GPROJI_SAFE_LEAST)
-        loop->watch.yield_at = gproji_min(iterations / 2 + iterations % 2, GPROJI_SAFE_LEAST);
+    if (iterations > GPROJI_SAFE_MOST)
+        loop->watch.yield_at = gproji_min(iterations / 2 + iterations % 2, GPROJI_SAFE_MOST);
     loop->best.residual = loop->best.merit = loop->watch.fallen = HUGE_VAL;
     loop->result.spoiled.element = -1;
     loop->result.attempts = 1;
@@ -12004,11 +12020,11 @@ GPROJI_INTERNAL size_t gproji_foretell(const gproji_loop *loop) {
         gproji_fail_compile(s);
         return 0;
     }
-    s->own.foretold = s->cholesky->own.foretold = &more;
+    s->heap.foretold = s->cholesky->heap.foretold = &more;
     gproji_take_compiled_arrays(s);
     gproji_cholesky_take_numeric(s->cholesky);
     if (loop->options.nearest && !s->vector.sum) gproji_start_multipliers(s);
-    s->own.foretold = s->cholesky->own.foretold = NULL;
+    s->heap.foretold = s->cholesky->heap.foretold = NULL;
     gproji_error_clear(&s->cholesky->error);
     /* Rows come in where dormant ones have no multipliers, and where corners are kept. */
     all = gproji_add_bytes(gproj_system_memory(s).used, more);
@@ -12089,7 +12105,7 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     n = (size_t)s->variable_count;
-    gradient = (double *)gproji_take_zeroed(&s->own, n, sizeof *gradient);
+    gradient = (double *)gproji_take_zeroed(&s->heap, n, sizeof *gradient);
     if (!gradient) {
         gproji_fail_memory(&s->error);
         return HUGE_VAL;
@@ -12101,7 +12117,7 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r)
             worst = gproji_fmax(worst, gproji_check_row(s, &s->group[i], r, gradient));
-    gproji_give(&s->own, gradient, n, sizeof *gradient);
+    gproji_give(&s->heap, gradient, n, sizeof *gradient);
     return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
 /* -- saving: see >>stream -- */
@@ -12259,7 +12275,8 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
 
 static const double gproji_touch = 1e-6; /* bounds so near to their limit stay there */
 
-/* Compiles the system for projections of `sides` columns at once. */
+/* Prepares the system for a drag: compiles it for all variables, with room for `sides` right-hand sides at once. False:
+   an error of the system, or no memory. */
 GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     memset(&s->progress, 0, sizeof s->progress);
     s->yield = GPROJI_YIELD_SLOWLY;
@@ -12267,8 +12284,8 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
 }
 
 /* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do
-   if they touch their limit, and so do the corners that a smooth solve before has woken. Leaves weights and active rows
-   so. Returns the residual. */
+   if they touch their limit, and so do the corners that a smooth solve before has woken. Weights and active
+   rows stay set. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -12417,7 +12434,7 @@ GPROJI_INLINE gproji_mesh_object *gproji_mesh_owner(gproj_mesh *mesh) {
     return (gproji_mesh_object *)(void *)((char *)mesh - offsetof(gproji_mesh_object, mesh));
 }
 
-/* Polygons without adjacency, and polylines: the builder's input. */
+/* Polygons without adjacency, and polylines: the input of gproji_mesh_build. */
 typedef struct gproji_soup {
     int32_t vertex_count;
     int32_t face_count;
@@ -13537,8 +13554,8 @@ GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3]
                     (int32_t)GPROJI_VERTICES_MAX);
     gproji_push(reader, &reader->vertex_line, line);
     if (reader->code) return;
-    reader->position = (double *)gproji_grow(reader->heap, reader->position, &reader->position_capacity, needed,
-                                             3 * sizeof(double));
+    reader->position =
+        (double *)gproji_grow(reader->heap, reader->position, &reader->position_capacity, needed, 3 * sizeof(double));
     if (reader->position_capacity < needed)
         reader->code = gproji_fail_memory(reader->error);
     else
@@ -13577,7 +13594,8 @@ GPROJI_INTERNAL int32_t gproji_obj_indices(gproji_reader *reader, gproji_ints *i
     return count;
 }
 
-/* Refuses indices beyond the vertices. Element e has degree[e] of them, or ends before number end[e + 1]. */
+/* Stops at the first index beyond the vertices. Element e, in line line[e], has degree[e] indices; if degree is NULL
+   they end before number end[e + 1]. */
 GPROJI_INTERNAL void gproji_obj_check_indices(gproji_reader *reader, const gproji_ints *ints, const gproji_ints *line,
                                               const int32_t *degree, const int32_t *end) {
     size_t e, c = 0;
@@ -13962,7 +13980,8 @@ GPROJI_INTERNAL gproj_format gproji_format_of_path(const char *path) {
 #define GPROJI_TEXT_MAX ((size_t)1 << 30)
 #endif
 
-/* Reads a file up to its end, or to the first piece with a zero byte, which no text has. */
+/* Appends a file to *text, NULL at first, up to its end or to a piece with a zero byte, which readers refuse. The
+   caller gives *text back, also after an error. */
 GPROJI_INTERNAL gproj_code gproji_read_file(gproji_file *file, const char *path, gproji_heap *heap, void **text,
                                             size_t *capacity, size_t *size, gproj_error *error) {
     char quote[GPROJI_PATH_QUOTE_SIZE];
@@ -14085,10 +14104,10 @@ GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
 /* Makes room for `entries` entries; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
     gproj_stencil *stencil = &object->stencil;
-    stencil->column = object->column = (int32_t *)gproji_grow(&object->heap, object->column, &object->column_capacity,
-                                                              entries, sizeof(int32_t));
-    stencil->weight = object->weight = (double *)gproji_grow(&object->heap, object->weight, &object->weight_capacity,
-                                                             entries, sizeof(double));
+    stencil->column = object->column =
+        (int32_t *)gproji_grow(&object->heap, object->column, &object->column_capacity, entries, sizeof(int32_t));
+    stencil->weight = object->weight =
+        (double *)gproji_grow(&object->heap, object->weight, &object->weight_capacity, entries, sizeof(double));
     return object->column_capacity >= entries && object->weight_capacity >= entries;
 }
 
@@ -14151,8 +14170,8 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* -- rows -- */
 
-/* A stencil that is made row by row; gproji_rows_end reports missing memory. */
-typedef struct gproji_rows {
+/* A stencil, a sparse matrix, that is made row by row; gproji_builder_end reports missing memory. */
+typedef struct gproji_builder {
     gproji_heap heap; /* gives `place` */
     const gproj_host *host;
     gproj_stencil *stencil;
@@ -14161,45 +14180,45 @@ typedef struct gproji_rows {
     int32_t row;    /* the one that is being made */
     int64_t count;  /* all entries so far */
     int64_t *place; /* column_count: the column's entry in this row, plus 1; not beyond the row's start: none yet */
-} gproji_rows;
+} gproji_builder;
 
-GPROJI_INTERNAL void gproji_rows_begin(gproji_rows *rows, int32_t row_count, int32_t column_count,
-                                       const gproj_host *host) {
-    rows->heap = gproji_heap_of(host), rows->host = host;
-    rows->column_count = column_count, rows->row = 0, rows->count = 0;
-    rows->place = (int64_t *)gproji_take_zeroed(&rows->heap, (size_t)column_count, sizeof *rows->place);
-    rows->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
-    rows->failed = !rows->place || !rows->stencil;
+GPROJI_INTERNAL void gproji_builder_begin(gproji_builder *builder, int32_t row_count, int32_t column_count,
+                                          const gproj_host *host) {
+    builder->heap = gproji_heap_of(host), builder->host = host;
+    builder->column_count = column_count, builder->row = 0, builder->count = 0;
+    builder->place = (int64_t *)gproji_take_zeroed(&builder->heap, (size_t)column_count, sizeof *builder->place);
+    builder->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
+    builder->failed = !builder->place || !builder->stencil;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
-GPROJI_INTERNAL void gproji_rows_add(gproji_rows *rows, int32_t column, double weight) {
+GPROJI_INTERNAL void gproji_builder_add(gproji_builder *builder, int32_t column, double weight) {
     gproji_stencil_object *object;
-    if (rows->failed) return;
-    object = gproji_stencil_owner(rows->stencil);
-    if (rows->place[column] <= object->start[rows->row]) {
-        rows->failed = !gproji_stencil_reserve(object, (size_t)rows->count + 1);
-        if (rows->failed) return;
-        object->column[rows->count] = column;
-        object->weight[rows->count] = 0;
-        rows->place[column] = ++rows->count;
+    if (builder->failed) return;
+    object = gproji_stencil_owner(builder->stencil);
+    if (builder->place[column] <= object->start[builder->row]) {
+        builder->failed = !gproji_stencil_reserve(object, (size_t)builder->count + 1);
+        if (builder->failed) return;
+        object->column[builder->count] = column;
+        object->weight[builder->count] = 0;
+        builder->place[column] = ++builder->count;
     }
-    object->weight[rows->place[column] - 1] += weight;
+    object->weight[builder->place[column] - 1] += weight;
 }
 
-GPROJI_INTERNAL void gproji_rows_next(gproji_rows *rows) {
-    rows->row++;
-    if (!rows->failed) gproji_stencil_owner(rows->stencil)->start[rows->row] = rows->count;
+GPROJI_INTERNAL void gproji_builder_next(gproji_builder *builder) {
+    builder->row++;
+    if (!builder->failed) gproji_stencil_owner(builder->stencil)->start[builder->row] = builder->count;
 }
 
 /* Finishes the stencil; NULL when there is no memory. */
-GPROJI_INTERNAL gproj_stencil *gproji_rows_end(gproji_rows *rows, gproj_error *error) {
+GPROJI_INTERNAL gproj_stencil *gproji_builder_end(gproji_builder *builder, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
-    gproji_give(&rows->heap, rows->place, (size_t)rows->column_count, sizeof *rows->place);
+    gproji_give(&builder->heap, builder->place, (size_t)builder->column_count, sizeof *builder->place);
     /* transposing twice sorts the columns in all rows, in linear time */
-    if (!rows->failed) turned = gproji_transposed(rows->stencil, rows->host);
-    gproj_stencil_destroy(rows->stencil);
-    if (turned) sorted = gproji_transposed(turned, rows->host);
+    if (!builder->failed) turned = gproji_transposed(builder->stencil, builder->host);
+    gproj_stencil_destroy(builder->stencil);
+    if (turned) sorted = gproji_transposed(turned, builder->host);
     gproj_stencil_destroy(turned);
     if (!sorted) gproji_fail_memory(error);
     return sorted;
@@ -14222,15 +14241,15 @@ typedef struct gproji_subdivision {
 } gproji_subdivision;
 
 /* Adds `share` times the mean of a face's corners. */
-GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_rows *rows) {
+GPROJI_INTERNAL void gproji_add_face_rule(const gproj_mesh *mesh, int32_t face, double share, gproji_builder *builder) {
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-        gproji_rows_add(rows, mesh->origin[h], share / mesh->face_degree[face]);
+        gproji_builder_add(builder, mesh->origin[h], share / mesh->face_degree[face]);
 }
 
 /* Adds `share` times the rule for a vertex whose edges are sharp if their sharpness is > least. */
 GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int32_t vertex, double least, double share,
-                                            gproji_rows *rows) {
+                                            gproji_builder *builder) {
     const gproj_mesh *mesh = level->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, end[2] = {0, 0}, sharp = 0;
     double n = 0, ring;
@@ -14243,13 +14262,13 @@ GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int
         h = gproji_rotate(mesh, h);
     } while (h != start);
     if (sharp > 2) { /* a corner */
-        gproji_rows_add(rows, vertex, share);
+        gproji_builder_add(builder, vertex, share);
         return;
     }
     if (sharp == 2) { /* on a crease: cubic B-spline */
-        gproji_rows_add(rows, end[0], 0.125 * share);
-        gproji_rows_add(rows, vertex, 0.75 * share);
-        gproji_rows_add(rows, end[1], 0.125 * share);
+        gproji_builder_add(builder, end[0], 0.125 * share);
+        gproji_builder_add(builder, vertex, 0.75 * share);
+        gproji_builder_add(builder, end[1], 0.125 * share);
         return;
     }
     /* smooth, inside the mesh: `ring` is the weight for each neighbour, and with Catmull-Clark for each face's
@@ -14257,14 +14276,14 @@ GPROJI_INTERNAL void gproji_add_vertex_rule(const gproji_subdivision *level, int
     if (level->scheme == GPROJ_LOOP) {
         double c = 0.375 + 0.25 * cos(2 * GPROJI_PI / n);
         ring = share * (0.625 - c * c) / n;
-        gproji_rows_add(rows, vertex, share - n * ring);
+        gproji_builder_add(builder, vertex, share - n * ring);
     } else {
         ring = share / (n * n);
-        gproji_rows_add(rows, vertex, share * (n - 2) / n);
+        gproji_builder_add(builder, vertex, share * (n - 2) / n);
     }
     do {
-        gproji_rows_add(rows, mesh->origin[h ^ 1], ring);
-        if (level->scheme != GPROJ_LOOP) gproji_add_face_rule(mesh, mesh->face[h], ring, rows);
+        gproji_builder_add(builder, mesh->origin[h ^ 1], ring);
+        if (level->scheme != GPROJ_LOOP) gproji_add_face_rule(mesh, mesh->face[h], ring, builder);
         h = gproji_rotate(mesh, h);
     } while (h != start);
 }
@@ -14297,18 +14316,18 @@ GPROJI_INTERNAL gproji_counts gproji_count_levels(const gproj_mesh *mesh, gproj_
 GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(gproji_subdivision *level) {
     const gproj_mesh *mesh = level->mesh;
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
-    gproji_rows rows;
+    gproji_builder builder;
     int32_t i, h;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_rows_begin(&rows, (int32_t)next.vertices, mesh->vertex_count, level->host);
+    gproji_builder_begin(&builder, (int32_t)next.vertices, mesh->vertex_count, level->host);
     /* 1. Vertices: a corner, or the rules for this level and the next, blended if creases here end in between: by the
        mean sharpness over edges that are sharp now and smooth then. */
-    for (i = 0; !rows.failed && i < mesh->vertex_count; ++i, gproji_rows_next(&rows)) {
+    for (i = 0; !builder.failed && i < mesh->vertex_count; ++i, gproji_builder_next(&builder)) {
         double sum = 0, now;
         int32_t count = 0;
         h = mesh->vertex_halfedge[i];
         if (h < 0 || (i < level->corner_count && level->corner[i])) {
-            gproji_rows_add(&rows, i, 1);
+            gproji_builder_add(&builder, i, 1);
             continue;
         }
         do {
@@ -14317,25 +14336,25 @@ GPROJI_INTERNAL gproj_stencil *gproji_level_stencil(gproji_subdivision *level) {
             h = gproji_rotate(mesh, h);
         } while (h != mesh->vertex_halfedge[i]);
         now = count ? sum / count : 1;
-        gproji_add_vertex_rule(level, i, 0, now, &rows);
-        if (now < 1) gproji_add_vertex_rule(level, i, 1, 1 - now, &rows);
+        gproji_add_vertex_rule(level, i, 0, now, &builder);
+        if (now < 1) gproji_add_vertex_rule(level, i, 1, 1 - now, &builder);
     }
     /* 2. Edges: the smooth rule and the sharp one, blended. Boundary edges, which lack a face, are sharp. */
-    for (i = 0; !rows.failed && i < mesh->edge_count; ++i, gproji_rows_next(&rows)) {
+    for (i = 0; !builder.failed && i < mesh->edge_count; ++i, gproji_builder_next(&builder)) {
         double sharp = gproji_fmin(level->sharpness[i], 1), smooth = 1 - sharp;
         double end = sharp / 2 + smooth * (loop ? 0.375 : 0.25);
-        for (h = 2 * i; h <= 2 * i + 1; ++h) gproji_rows_add(&rows, mesh->origin[h], end);
+        for (h = 2 * i; h <= 2 * i + 1; ++h) gproji_builder_add(&builder, mesh->origin[h], end);
         for (h = 2 * i; smooth > 0 && h <= 2 * i + 1; ++h) {
             if (loop)
-                gproji_rows_add(&rows, mesh->origin[mesh->prev[h]], smooth / 8);
+                gproji_builder_add(&builder, mesh->origin[mesh->prev[h]], smooth / 8);
             else
-                gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, &rows);
+                gproji_add_face_rule(mesh, mesh->face[h], smooth / 4, &builder);
         }
     }
     /* 3. Faces. */
-    for (i = 0; !rows.failed && !loop && i < mesh->face_count; ++i, gproji_rows_next(&rows))
-        gproji_add_face_rule(mesh, i, 1, &rows);
-    return gproji_rows_end(&rows, level->error);
+    for (i = 0; !builder.failed && !loop && i < mesh->face_count; ++i, gproji_builder_next(&builder))
+        gproji_add_face_rule(mesh, i, 1, &builder);
+    return gproji_builder_end(&builder, level->error);
 }
 
 /* Builds the next level's mesh. */
@@ -14401,7 +14420,7 @@ GPROJ_API gproj_stencil *gproj_stencil_transpose(const gproj_stencil *stencil, c
 
 GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const gproj_stencil *coarse,
                                                 const gproj_host *host, gproj_error *error) {
-    gproji_rows rows;
+    gproji_builder builder;
     int64_t k, l;
     int32_t i;
     gproji_error_clear(error);
@@ -14416,15 +14435,15 @@ GPROJ_API gproj_stencil *gproj_stencil_multiply(const gproj_stencil *fine, const
                       fine->column_count, coarse->row_count);
         return NULL;
     }
-    gproji_rows_begin(&rows, fine->row_count, coarse->column_count, host);
-    for (i = 0; !rows.failed && i < fine->row_count; ++i, gproji_rows_next(&rows)) {
+    gproji_builder_begin(&builder, fine->row_count, coarse->column_count, host);
+    for (i = 0; !builder.failed && i < fine->row_count; ++i, gproji_builder_next(&builder)) {
         for (k = fine->start[i]; k < fine->start[i + 1]; ++k) {
             int32_t middle = fine->column[k];
             for (l = coarse->start[middle]; l < coarse->start[middle + 1]; ++l)
-                gproji_rows_add(&rows, coarse->column[l], fine->weight[k] * coarse->weight[l]);
+                gproji_builder_add(&builder, coarse->column[l], fine->weight[k] * coarse->weight[l]);
         }
     }
-    return gproji_rows_end(&rows, error);
+    return gproji_builder_end(&builder, error);
 }
 
 /* -- checks -- */
@@ -14827,8 +14846,8 @@ GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3],
 }
 
 /* The point in an item nearest to p, with barycentric coordinates `weight`. Returns the squared distance. */
-GPROJI_INTERNAL double gproji_closest_on_item(const gproji_hierarchy *tree, int32_t item, const double p[3], double out[3],
-                                              double weight[3]) {
+GPROJI_INTERNAL double gproji_closest_on_item(const gproji_hierarchy *tree, int32_t item, const double p[3],
+                                              double out[3], double weight[3]) {
     const double *corner[3];
     int32_t c;
     for (c = 0; c < tree->corners; ++c) corner[c] = gproji_item_corner(tree, item, c);
@@ -16369,7 +16388,8 @@ GPROJI_INTERNAL void gproji_unit_normal(const gproj_mesh *mesh, const double *po
     gproji_normalise3(out, gproji_zero);
 }
 
-/* Unit normals on demand. Each vertex around a large face asks for that face's, so the last few are remembered. */
+/* Unit normals on demand at positions that do not change. Each vertex of a large face asks for that face's normal, so
+   the last few of these are kept. */
 typedef struct gproji_normals {
     const gproj_mesh *mesh;
     const double *position;
@@ -16378,7 +16398,8 @@ typedef struct gproji_normals {
     double normal[GPROJI_NORMALS][3];
 } gproji_normals;
 
-GPROJI_INTERNAL gproji_normals gproji_normals_of(const gproj_mesh *mesh, const double *position) {
+/* No normals yet; gproji_recall_normal finds them. */
+GPROJI_INTERNAL gproji_normals gproji_make_normals(const gproj_mesh *mesh, const double *position) {
     gproji_normals normals;
     memset(&normals, 0, sizeof normals);
     normals.mesh = mesh, normals.position = position;
@@ -16492,7 +16513,8 @@ GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t ve
     return fabs(sum);
 }
 
-/* The area enclosed by the normals around an interior vertex, as a fan about their mean; 0 at the boundary. */
+/* The area that the normals around an interior vertex span: triangles from their mean, all counted positive; 0 at the
+   boundary. */
 GPROJI_INTERNAL double gproji_gauss_area(gproji_normals *normals, int32_t vertex) {
     const gproj_mesh *mesh = normals->mesh;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, count = 0;
@@ -16745,7 +16767,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
     m.planarity_face = -1;
     if (!mesh) return m;
     /* 1. Sizes and shape properties. */
-    normals = gproji_normals_of(mesh, mesh->position);
+    normals = gproji_make_normals(mesh, mesh->position);
     m.mean_edge = gproji_mean_edge(mesh, mesh->position);
     for (e = 0; e < mesh->edge_count; ++e) {
         double length = gproji_edge_length(mesh, mesh->position, e);
@@ -16840,7 +16862,7 @@ GPROJI_INTERNAL bool gproji_crosses_itself(const gproj_mesh *mesh, const double 
 /* Counts damage. The original is asked for folds and crossings only if there is one now: nearly never. */
 GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *position, const double *original,
                                          gproji_damages *d) {
-    gproji_normals was = gproji_normals_of(mesh, original), is = gproji_normals_of(mesh, position);
+    gproji_normals was = gproji_make_normals(mesh, original), is = gproji_make_normals(mesh, position);
     double grown = HUGE_VAL, mean;
     int32_t i;
     memset(d->count, 0, sizeof d->count);
@@ -16982,7 +17004,7 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
 }
 
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
-    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
+    gproji_normals normals = gproji_make_normals(mesh, mesh->position);
     gproji_mirrors work;
     int32_t v, at;
     work.first = work.last = 0;
@@ -17084,7 +17106,7 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
 }
 
 GPROJI_INTERNAL bool gproji_face_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
-    gproji_normals normals = gproji_normals_of(mesh, mesh->position);
+    gproji_normals normals = gproji_make_normals(mesh, mesh->position);
     size_t count = 3 * (size_t)mesh->vertex_count, k;
     double square, before, first, curvature;
     gproji_parallels p;
@@ -17894,8 +17916,9 @@ GPROJI_INTERNAL void gproji_choose_edges(const gproji_filling *f, int32_t *edges
     if (sum < 4) edges[longest] += 4 - sum;
 }
 
-/* Finds each side's number of edges, checks them, and sums them up into `start`. */
-GPROJI_INTERNAL gproj_code gproji_divide_sides(gproji_filling *f) {
+/* Decides how many edges each side gets and refuses numbers that quads cannot fill. Then start[j] is the first boundary
+   vertex of side j, and start[sides] the number of all. */
+GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     int32_t side, from, to, *edges, sum = 0, change = 0;
     f->edge_length = f->options.edge_length;
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
@@ -18627,7 +18650,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_pool_start(&f.pool, f.heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
-    if (!code) code = gproji_divide_sides(&f);
+    if (!code) code = gproji_count_side_edges(&f);
     if (!code) code = gproji_divide_curve(&f);
     /* 1. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
     variant = f.options.variant;
@@ -18724,9 +18747,9 @@ struct gproji_part {
     const gproji_rule *rule;
     gproj_form *form;
     int32_t group;
-    int32_t count;       /* entries in use, in `vertex` and in lists by entry */
+    int32_t count;       /* entries in use, in `element` and in lists by entry */
     int32_t capacity;    /* entries that these have room for */
-    int32_t *vertex;     /* the elements with rows: vertices, edges, faces, or half-edges */
+    int32_t *element;    /* with rows: vertices, edges, faces or half-edges, as the rule says; ~v in conicality */
     double given[4];     /* numbers from the caller, in internal units (stresses in theirs): a target, bounds, prices */
     double *factor;      /* more of them, one per entry; or NULL */
     int32_t curve_count; /* curves that the part owns, in internal units */
@@ -18781,7 +18804,7 @@ typedef struct gproji_form_work {
 } gproji_form_work;
 
 struct gproj_form {
-    gproji_heap own;
+    gproji_heap heap;
     gproji_pool pool; /* has the arrays below, but those of `unknowns` */
     gproj_error error;
     gproj_host host;
@@ -18812,7 +18835,7 @@ GPROJ_API void gproj_form_destroy(gproj_form *form) {
     gproji_heap *own;
     int32_t i;
     if (!form) return;
-    own = &form->own;
+    own = &form->heap;
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
     gproji_give(own, form->statics, 1, sizeof *form->statics);
     while (form->part) {
@@ -18868,7 +18891,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     double edge;
     if (!form) return NULL;
     pool = &form->pool;
-    gproji_pool_start(pool, &form->own);
+    gproji_pool_start(pool, &form->heap);
     gproji_error_clear(&form->error);
     if (host) form->host = *host;
     form->mesh = mesh;
@@ -18933,7 +18956,7 @@ GPROJ_API gproj_memory gproj_form_memory(const gproj_form *form) {
     int32_t i;
     memset(&sum, 0, sizeof sum);
     if (!form) return sum;
-    gproji_add_memory(&sum, form->own.account);
+    gproji_add_memory(&sum, form->heap.account);
     gproji_add_memory(&sum, gproj_system_memory(form->system));
     for (part = form->part; part; part = part->next)
         for (i = 0; i < part->curve_count; ++i)
@@ -18954,13 +18977,13 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form)) return NULL;
-    part = (gproji_part *)gproji_take_zeroed(&form->own, 1, sizeof *part);
+    part = (gproji_part *)gproji_take_zeroed(&form->heap, 1, sizeof *part);
     if (part) {
-        gproji_pool_start(&part->pool, &form->own);
-        part->vertex = (int32_t *)gproji_pool_take(&part->pool, count, sizeof *part->vertex);
+        gproji_pool_start(&part->pool, &form->heap);
+        part->element = (int32_t *)gproji_pool_take(&part->pool, count, sizeof *part->element);
     }
-    if (!part || !part->vertex) {
-        gproji_give(&form->own, part, 1, sizeof *part);
+    if (!part || !part->element) {
+        gproji_give(&form->heap, part, 1, sizeof *part);
         gproji_fail_memory(&form->error);
         return NULL;
     }
@@ -19131,7 +19154,7 @@ GPROJI_INTERNAL gproji_part *gproji_new_list_part(gproj_form *form, const gproji
     int32_t k;
     if (!gproji_form_ready(form) || !gproji_take_list(form, rule->name, rule->place, &count, list)) return NULL;
     part = gproji_new_part(form, rule, count);
-    for (k = 0; part && k < count; ++k) part->vertex[k] = list ? list[k] : k;
+    for (k = 0; part && k < count; ++k) part->element[k] = list ? list[k] : k;
     return part;
 }
 
@@ -19145,7 +19168,7 @@ GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, const gp
     for (v = 0; v < form->mesh->vertex_count; ++v) count += select(form, v);
     part = gproji_new_part(form, rule, count);
     for (v = 0, count = 0; part && v < form->mesh->vertex_count; ++v)
-        if (select(form, v)) part->vertex[count++] = v;
+        if (select(form, v)) part->element[count++] = v;
     return part;
 }
 
@@ -19206,12 +19229,12 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproji_part *part, const double *targe
     gproji_expect_group(form, group, 0, 3 * (size_t)part->count, 3 * (size_t)part->count, 3 * (size_t)part->count);
     for (i = 0; i < part->count; ++i) {
         double p[3];
-        gproji_copy3(form->original + 3 * (size_t)part->vertex[i], p);
+        gproji_copy3(form->original + 3 * (size_t)part->element[i], p);
         if (targets) gproji_to_internal(form, targets + 3 * (size_t)i, p);
         for (k = 0; k < 3; ++k) {
             gproj_term term;
-            gproji_set_term(&term, 3 * part->vertex[i] + k, -1, 1);
-            gproj_system_add_row(form->system, group, 1, &term, -p[k], part->vertex[i]);
+            gproji_set_term(&term, 3 * part->element[i] + k, -1, 1);
+            gproj_system_add_row(form->system, group, 1, &term, -p[k], part->element[i]);
         }
     }
     return gproji_built(form, group);
@@ -19295,7 +19318,7 @@ GPROJI_INTERNAL void gproji_start_normals(gproji_part *part) {
     double *x = gproj_system_values(part->form->system);
     int32_t i;
     for (i = 0; i < part->count; ++i)
-        gproji_face_normal(part->form, part->vertex[i], x + part->form->normal[part->vertex[i]]);
+        gproji_face_normal(part->form, part->element[i], x + part->form->normal[part->element[i]]);
 }
 
 static const double gproji_settle_shift = 1e-9; /* relative to the trace, in the inverse iteration for normals */
@@ -19308,8 +19331,8 @@ enum {
 GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, int32_t from, int32_t to) {
     const gproj_mesh *mesh = part->form->mesh;
     for (; from < to; ++from) {
-        double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3], *n = x + part->form->normal[part->vertex[from]];
-        int32_t face = part->vertex[from], h = mesh->face_halfedge[face], c, round;
+        double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3], *n = x + part->form->normal[part->element[from]];
+        int32_t face = part->element[from], h = mesh->face_halfedge[face], c, round;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
             gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
             gproji_add_square3(e, a);
@@ -19343,7 +19366,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     if (n < 0) return;
     gproji_set_auxiliary(s, n, 3);
     form->normal[face] = n;
-    part->vertex[part->count++] = face;
+    part->element[part->count++] = face;
     gproji_join_block(s, n);
     local = gproji_add_placed_rows(s, part->group, 0, 1, 3, unit, 3, -1, face);
     for (k = 0; k < 3 && local; ++k) local[k] = n + k;
@@ -19459,7 +19482,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         int32_t segment = gliding->segment[i], pinned = -1;
         double p[3], end[3];
         if (!curve) continue;
-        gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->vertex[i], p);
+        gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->element[i], p);
         if (gliding->curve) gproji_from_internal(part->form, p, p);
         /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
            between two segments for ever. */
@@ -19531,10 +19554,10 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
         gliding->segment[i] = gliding->pinned[i] = -1;
-        gproji_set_point(term, 3 * part->vertex[i]);
-        for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+        gproji_set_point(term, 3 * part->element[i]);
+        for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->element[i]);
         if (gproji_form_ready(form))
-            gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->vertex[i],
+            gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->element[i],
                                !gproji_curve_at(part, i));
     }
     return gproji_built(form, part->group);
@@ -19563,8 +19586,8 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     part->curve = (gproj_curve **)gproji_part_take(part, mesh->loop_count, sizeof *part->curve);
     gliding->curve_of = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->curve_of);
     if (part->curve) part->curve_count = mesh->loop_count;
-    loop_of = (int32_t *)gproji_take(&form->own, vertices, sizeof *loop_of);
-    points = (double *)gproji_take(&form->own, 3 * vertices, sizeof *points);
+    loop_of = (int32_t *)gproji_take(&form->heap, vertices, sizeof *loop_of);
+    points = (double *)gproji_take(&form->heap, 3 * vertices, sizeof *points);
     if (!loop_of || !points) gproji_fail_memory(&form->error);
     /* 1. Each boundary loop of the original as a curve in internal units; NULL for one without extent. */
     for (l = 0; l < mesh->loop_count && gproji_form_ready(form); ++l) {
@@ -19582,11 +19605,11 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     }
     /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
     for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
-        l = loop_of[part->vertex[i]];
-        gliding->curve_of[i] = gproj_form_is_corner(form, part->vertex[i]) || !part->curve[l] ? -1 : l;
+        l = loop_of[part->element[i]];
+        gliding->curve_of[i] = gproj_form_is_corner(form, part->element[i]) || !part->curve[l] ? -1 : l;
     }
-    gproji_give(&form->own, loop_of, vertices, sizeof *loop_of);
-    gproji_give(&form->own, points, 3 * vertices, sizeof *points);
+    gproji_give(&form->heap, loop_of, vertices, sizeof *loop_of);
+    gproji_give(&form->heap, points, 3 * vertices, sizeof *points);
     return gproji_form_ready(form) ? gproji_add_gliding_rows(part, weight) : -1;
 }
 
@@ -19602,7 +19625,7 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
         double point[3];
         gproj_surface_hit hit;
         /* The surface is in the mesh's units. */
-        gproji_from_internal(part->form, x + 3 * (size_t)part->vertex[i], point);
+        gproji_from_internal(part->form, x + 3 * (size_t)part->element[i], point);
         hit = gproj_surface_closest(*surface, point);
         gproji_to_internal(part->form, hit.point, point);
         gproj_system_set_row(system, group, i, hit.normal, -gproji_dot3(hit.normal, point));
@@ -19624,8 +19647,8 @@ GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *sur
     gproji_add_group(part, weight);
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
-        gproji_set_point(term, 3 * part->vertex[i]);
-        gproj_system_add_row(form->system, part->group, 3, term, 0, part->vertex[i]);
+        gproji_set_point(term, 3 * part->element[i]);
+        gproj_system_add_row(form->system, part->group, 3, term, 0, part->element[i]);
     }
     return gproji_built(form, part->group);
 }
@@ -19649,7 +19672,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
     if (tangential) {
         for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
         for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
-        tangential->vertex[tangential->count++] = d->element;
+        tangential->element[tangential->count++] = d->element;
         return;
     }
     if (!gproji_system_has_group(form->system, group)) return;
@@ -19730,7 +19753,7 @@ GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
 }
 
 /* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
-   vertex or face, which is in part->vertex. */
+   vertex or face, which is in part->element. */
 GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
                                                 const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -19742,9 +19765,9 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
     if (!faces) gproji_update_areas(part->form);
     for (r = 0; r < 2 * part->count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &terms);
-        int32_t neighbours = terms / 3 - 1, element = part->vertex[r / 2];
+        int32_t neighbours = terms / 3 - 1, element = part->element[r / 2];
         /* The differences at one element follow each other. */
-        if (r == 0 || element != part->vertex[(r - 1) / 2]) {
+        if (r == 0 || element != part->element[(r - 1) / 2]) {
             if (faces) {
                 gproji_copy3(x + part->form->normal[element], normal);
                 gproji_normalise3(normal, gproji_up);
@@ -19871,11 +19894,11 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                                gproji_place_word(info.place), element, info.name);
     }
     /* 2. A row's weight is own x factor: own by builder or refresh, the factor by this function. */
-    of = (double *)gproji_take(&form->own, (size_t)have, sizeof *of);
+    of = (double *)gproji_take(&form->heap, (size_t)have, sizeof *of);
     for (k = 0; of && k < have; ++k) of[k] = -1;
     for (k = 0; of && k < count; ++k) of[elements ? elements[k] : k] = weights[k];
     if (!of || !gproji_set_factors(form->system, group, have, of)) gproji_fail_memory(&form->error);
-    gproji_give(&form->own, of, (size_t)have, sizeof *of);
+    gproji_give(&form->heap, of, (size_t)have, sizeof *of);
     return form->error.code;
 }
 
@@ -19919,7 +19942,7 @@ GPROJI_INTERNAL void gproji_start_mean(gproji_part *part) {
     double *x = gproj_system_values(form->system), mean = 0;
     if (!edges) gproji_update_areas(form);
     for (k = 0; k < count; ++k)
-        mean += (edges ? gproji_edge_length(form->mesh, x, part->vertex[k])
+        mean += (edges ? gproji_edge_length(form->mesh, x, part->element[k])
                        : gproji_length3(form->work.area + 3 * (size_t)k)) /
                 count;
     x[*(const int32_t *)part->data] = mean;
@@ -19939,9 +19962,9 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
         gproj_term term[10];
-        gproji_set_length_terms(form->mesh, part->vertex[k], 0.5, term);
+        gproji_set_length_terms(form->mesh, part->element[k], 0.5, term);
         gproji_set_term(&term[9], *common, *common, -0.5);
-        gproj_system_add_row(form->system, part->group, 10, term, 0, part->vertex[k]);
+        gproj_system_add_row(form->system, part->group, 10, term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -19961,11 +19984,11 @@ GPROJI_INTERNAL void gproji_start_midsphere(gproji_part *part) {
     double mean[3] = {0, 0, 0}, m[3], row[4], matrix[16] = {0}, fit[4] = {0, 0, 0, 0}, square;
     int32_t i, j, k;
     for (k = 0; k < part->count; ++k) {
-        gproji_midpoint(part->form->mesh, x, part->vertex[k], m);
+        gproji_midpoint(part->form->mesh, x, part->element[k], m);
         gproji_add_scaled3(1.0 / part->count, m, mean);
     }
     for (k = 0; k < part->count; ++k) { /* normal equations for (c, s), by rows (2 (m - m0), -1) */
-        gproji_midpoint(part->form->mesh, x, part->vertex[k], m);
+        gproji_midpoint(part->form->mesh, x, part->element[k], m);
         gproji_sub3(m, mean, m);
         square = gproji_dot3(m, m);
         for (i = 0; i < 3; ++i) row[i] = 2 * m[i];
@@ -19999,12 +20022,12 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
     half = 0.5 / sqrt(gproji_fmax(gproji_dot3(sphere, sphere) - sphere[3], 1e-6)); /* 1 / (2 R) */
     gproji_add_group(part, weight);
     for (k = 0; k < part->count && gproji_form_ready(form); ++k) {
-        const int32_t *end = form->mesh->origin + 2 * (size_t)part->vertex[k];
+        const int32_t *end = form->mesh->origin + 2 * (size_t)part->element[k];
         const int32_t point[3] = {3 * end[0], 3 * end[1], *first};
         gproj_term term[16];
         gproji_set_products(term, 5, product, point, half);
         gproji_set_term(&term[15], *first + 3, -1, half);
-        gproj_system_add_row(form->system, part->group, 16, term, 0, part->vertex[k]);
+        gproj_system_add_row(form->system, part->group, 16, term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -20035,7 +20058,7 @@ typedef struct gproji_planes {
 GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
     gproj_form *form = part->form;
     gproji_planes *set = (gproji_planes *)part->data;
-    const int32_t *vertex = part->vertex + from;
+    const int32_t *vertex = part->element + from;
     int32_t count = part->count - from, first = -1, i, p, q, k;
     double plane[8], middle[3];
     gproj_term term[7];
@@ -20071,7 +20094,7 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
         double plane[8], middle[3];
         for (to = from + 1; to < part->count && set->first[to] == set->first[from]; ++to) continue;
         if (set->first[from] < 0) continue;
-        gproji_fit_planes(part->form, set->planes, to - from, part->vertex + from, plane, middle);
+        gproji_fit_planes(part->form, set->planes, to - from, part->element + from, plane, middle);
         memcpy(gproj_system_values(part->form->system) + set->first[from], plane,
                4 * (size_t)set->planes * sizeof *plane);
     }
@@ -20140,10 +20163,10 @@ GPROJI_INTERNAL int32_t gproji_add_boundary_sets(gproj_form *form, const gproji_
                                            "needs 3 to be straight between them",
                                            mesh->origin[h], corners));
         do {
-            part->vertex[part->count++] = mesh->origin[h];
+            part->element[part->count++] = mesh->origin[h];
             h = mesh->next[h];
             if (corners == 0 || !gproj_form_is_corner(form, mesh->origin[h])) continue;
-            part->vertex[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
+            part->element[part->count++] = mesh->origin[h]; /* a corner ends a set and begins the next */
             gproji_add_plane_set(part, from);
             from = part->count;
         } while (h != start);
@@ -20241,7 +20264,7 @@ GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
     double *x = gproj_system_values(part->form->system);
     int32_t i, k;
     for (i = 0; i < part->count; ++i) {
-        int32_t face = part->vertex[i], h = mesh->face_halfedge[face];
+        int32_t face = part->element[i], h = mesh->face_halfedge[face];
         double mean[3] = {0, 0, 0}, normal[3];
         for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
             gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
@@ -20257,9 +20280,9 @@ static const double gproji_settle_free = 1e-4; /* relative to the trace: axis po
 GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *x, int32_t from, int32_t to) {
     const gproj_mesh *mesh = part->form->mesh;
     for (; from < to; ++from) {
-        double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, *p = x + part->form->axis[part->vertex[from]];
+        double a[6] = {0, 0, 0, 0, 0, 0}, b[3] = {0, 0, 0}, *p = x + part->form->axis[part->element[from]];
         double e[3], m[3], change[3];
-        int32_t face = part->vertex[from], h = mesh->face_halfedge[face], c, k;
+        int32_t face = part->element[from], h = mesh->face_halfedge[face], c, k;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
             const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
             gproji_sub3(w, v, e);
@@ -20289,7 +20312,7 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f) {
         if (mesh->face_degree[f] == 3) continue;
         if (form->axis[f] < 0) form->axis[f] = gproj_system_add_variables(form->system, 3, 3, NULL);
-        part->vertex[part->count++] = f;
+        part->element[part->count++] = f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f] && gproji_form_ready(form); ++k, h = mesh->next[h]) {
             gproj_term term[12];
@@ -20303,7 +20326,7 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
     return gproji_built(form, part->group);
 }
 
-/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->vertex (~v stands for the row a'a =
+/* Rows det(a, e, m) / (2 |e|) = 0, linearised at x, for each half-edge h in part->element (~v stands for the row a'a =
    1): a the axis at v_i, e = v_j - v_i, m = n_f + n_g. The derivatives are e x m, m x a, a x e; |e| is frozen. Terms:
    a, v_i, v_j, n_f, n_g. */
 GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int32_t group,
@@ -20316,7 +20339,7 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
     int32_t i, count, k, c;
     (void)progress;
     for (i = 0; i < part->count; ++i) {
-        int32_t h = part->vertex[i];
+        int32_t h = part->element[i];
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         if (h < 0) continue;
         a = x + form->cone[mesh->origin[h]];
@@ -20337,9 +20360,9 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
 
 /* Gives cone axes the values that fit the vertices at x best. */
 GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int32_t from, int32_t to) {
-    gproji_normals normals = gproji_normals_of(part->form->mesh, x);
+    gproji_normals normals = gproji_make_normals(part->form->mesh, x);
     for (; from < to; ++from) {
-        int32_t v = ~part->vertex[from];
+        int32_t v = ~part->element[from];
         if (v >= 0) gproji_find_axis(&normals, v, x + part->form->cone[v]);
     }
 }
@@ -20376,7 +20399,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         if (axis < 0) continue;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
         gproj_system_add_row(form->system, part->group, 3, term, -1, v);
-        part->vertex[part->count++] = ~v;
+        part->element[part->count++] = ~v;
         do {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
             if (face >= 0 && other >= 0) {
@@ -20386,7 +20409,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
                 gproji_set_point(&term[9], form->normal[face]);
                 gproji_set_point(&term[12], form->normal[other]);
                 gproj_system_add_row(form->system, part->group, 15, term, 0, v);
-                part->vertex[part->count++] = h;
+                part->element[part->count++] = h;
             }
             h = gproji_rotate(mesh, h);
         } while (h != start && gproji_form_ready(form));
@@ -20507,12 +20530,12 @@ GPROJI_INTERNAL gproji_part *gproji_new_total(gproj_form *form, const gproji_rul
 GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight, int32_t rows) {
     gproj_form *form = part->form;
     int32_t count = 3 * form->mesh->vertex_count, t;
-    gproj_term *term = (gproj_term *)gproji_take(&form->own, (size_t)count, sizeof *term);
+    gproj_term *term = (gproj_term *)gproji_take(&form->heap, (size_t)count, sizeof *term);
     if (!term) return gproji_none(gproji_fail_memory(&form->error));
     gproji_add_group(part, weight);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
     for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
-    gproji_give(&form->own, term, (size_t)count, sizeof *term);
+    gproji_give(&form->heap, term, (size_t)count, sizeof *term);
     return gproji_built(form, part->group);
 }
 
@@ -20615,8 +20638,8 @@ GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system
             double sign = side == 0 ? 1 : -1, area = part->given[side], scale, constant;
             if (!gproji_has_bound(part->given, side)) continue;
             scale = sign / (2 * sqrt(area));
-            constant =
-                gproji_linearise_area(part->form, part->vertex[i], scale, gproji_row_terms(system, group, row, &count));
+            constant = gproji_linearise_area(part->form, part->element[i], scale,
+                                             gproji_row_terms(system, group, row, &count));
             gproj_system_set_row(system, group, row++, NULL, constant - scale * area);
         }
     }
@@ -20634,10 +20657,10 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
     if (!part || !gproji_take_bounds(form, name, min, max, form->scale * form->scale, part->given)) return -1;
     gproji_add_group(part, weight);
     for (k = 0; k < part->count; ++k) {
-        terms = gproji_set_area_terms(form->mesh, part->vertex[k], form->work.term);
+        terms = gproji_set_area_terms(form->mesh, part->element[k], form->work.term);
         for (side = 0; side < 2; ++side)
             if (gproji_has_bound(part->given, side))
-                gproj_system_add_row(form->system, part->group, terms, form->work.term, 0, part->vertex[k]);
+                gproj_system_add_row(form->system, part->group, terms, form->work.term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -20878,15 +20901,15 @@ GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj
                                        "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
                                        part->rule->name, count));
     needed = (size_t)form->unknowns.count + 1;
-    form->unknowns.block = (gproji_unknowns *)gproji_grow(&form->own, form->unknowns.block, &form->unknowns.capacity,
-                                                          needed, sizeof *u);
+    form->unknowns.block =
+        (gproji_unknowns *)gproji_grow(&form->heap, form->unknowns.block, &form->unknowns.capacity, needed, sizeof *u);
     if (form->unknowns.capacity < needed) return gproji_none(gproji_fail_memory(&form->error));
     u = &form->unknowns.block[form->unknowns.count];
-    u->value = (double *)gproji_take(&form->own, (size_t)count, sizeof *u->value);
+    u->value = (double *)gproji_take(&form->heap, (size_t)count, sizeof *u->value);
     if (!u->value) gproji_fail_memory(&form->error);
     u->first = u->value ? gproj_system_add_variables(form->system, count, size, NULL) : -1;
     if (u->first < 0) {
-        gproji_give(&form->own, u->value, (size_t)count, sizeof *u->value);
+        gproji_give(&form->heap, u->value, (size_t)count, sizeof *u->value);
         return -1;
     }
     memcpy(u->value, values, (size_t)count * sizeof *values);
@@ -20933,7 +20956,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
                                        "%s: there is no %s %d, and -1 is none", part->rule->name,
                                        gproji_place_word(part->rule->place), element));
-    inside = (gproj_term *)gproji_take(&form->own, room, sizeof *inside);
+    inside = (gproj_term *)gproji_take(&form->heap, room, sizeof *inside);
     if (!inside) gproji_fail_memory(&form->error);
     gproji_sum_add_product(&sum, form->scale, constant);
     for (t = 0; t < count && gproji_form_ready(form); ++t) {
@@ -20957,7 +20980,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     }
     if (gproji_form_ready(form))
         row = gproj_system_add_row(form->system, group, made, inside, gproji_sum_value(&sum), element);
-    gproji_give(&form->own, inside, room, sizeof *inside);
+    gproji_give(&form->heap, inside, room, sizeof *inside);
     return row;
 }
 
@@ -20977,7 +21000,8 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
         return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "residuals: the rows of group %d belong to the whole mesh, see gproj_form_group_info",
                            group);
-    if (gproji_worst_by_element(form->system, group, gproji_element_count(form->mesh, place), per_element)) return GPROJ_OK;
+    if (gproji_worst_by_element(form->system, group, gproji_element_count(form->mesh, place), per_element))
+        return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                        "residuals: the form has not been solved since something was added");
 }
@@ -20999,12 +21023,12 @@ enum {
     GPROJI_AXES = 7 /* x, y and z */
 };
 
-/* First forces. A density of `thrust` times the mean load, for each edge between the middle and the supports, is that
-   of a shallow dome, rising by less than a tenth of the radius: the larger the forces, the less a shape has to move. (A
-   solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that balance a shape best
-   are damped towards three quarters of this, and more with signs, which keeps them off zero. A shape carries nothing if
-   its best forces, damped by `faint`, leave more than `lost` of the loads: it starts from uniform forces, kept at
-   first. */
+/* First forces. A density of gproji_force_thrust times the mean load, for each edge between the middle and the
+   supports, is that of a shallow dome, rising by less than a tenth of the radius: the larger the forces, the less a
+   shape has to move. (A solve for the nearest mesh finds how large they should be, and begins with 1.) The forces that
+   balance a shape best are damped towards three quarters of this, and more with signs, which keeps them off zero. A
+   shape carries nothing if its best forces, damped by gproji_force_faint, leave more than gproji_force_lost of the
+   loads: it starts from uniform forces, kept at first. */
 static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_force_damping = 0.03,
                     gproji_force_signed = 0.1, gproji_force_faint = 0.01, gproji_force_lost = 0.9;
 
@@ -21048,7 +21072,8 @@ GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_load
     return gproji_dot3(h, area);
 }
 
-/* The load on each vertex at positions x, 3 numbers each. */
+/* The load on each vertex at positions x, 3 numbers each. The sign of gravity, -z, is here and in the rows, see
+   gproji_linearise_weight and gproji_refresh_equilibrium. */
 GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, gproji_load_units units,
                                      const double *x, double *out) {
     int32_t v, e, f, c, k;
@@ -21279,17 +21304,19 @@ GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_l
 GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *loads, const gproj_supports *supports) {
     const gproj_mesh *mesh = form->mesh;
     int64_t vertices = mesh->vertex_count, edges = mesh->edge_count;
-    gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->own, 1, sizeof *s);
+    gproji_statics *s = (gproji_statics *)gproji_take_zeroed(&form->heap, 1, sizeof *s);
     int32_t v, e, k, first, carrying = 0;
     form->statics = s;
     if (!s) return false;
     /* 1. Arrays; loads are copied. */
-    gproji_pool_start(&s->pool, &form->own);
+    gproji_pool_start(&s->pool, &form->heap);
     s->group = -1;
     s->load_scale = 1;
     s->loads = *loads;
-    if (loads->edge_density) s->edge_density = (double *)gproji_pool_copy(&s->pool, loads->edge_density, edges, sizeof(double));
-    if (loads->point_load) s->point_load = (double *)gproji_pool_copy(&s->pool, loads->point_load, vertices, 3 * sizeof(double));
+    if (loads->edge_density)
+        s->edge_density = (double *)gproji_pool_copy(&s->pool, loads->edge_density, edges, sizeof(double));
+    if (loads->point_load)
+        s->point_load = (double *)gproji_pool_copy(&s->pool, loads->point_load, vertices, 3 * sizeof(double));
     s->loads.edge_density = s->edge_density;
     s->loads.point_load = s->point_load;
     s->axes = (uint8_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->axes);
@@ -21347,13 +21374,13 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
                         edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
     spokes = 2 * (size_t)form->work.ring_size;
     count = spokes + 3 * most;
-    spoke = (int32_t *)gproji_take(&form->own, spokes, sizeof *spoke);
-    term = (gproj_term *)gproji_take(&form->own, count, sizeof *term);
+    spoke = (int32_t *)gproji_take(&form->heap, spokes, sizeof *spoke);
+    term = (gproj_term *)gproji_take(&form->heap, count, sizeof *term);
     if (!spoke || !term) gproji_fail_memory(&form->error);
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
         if (s->axes[v]) gproji_add_vertex_equilibrium(form, v, spoke, term);
-    gproji_give(&form->own, spoke, spokes, sizeof *spoke);
-    gproji_give(&form->own, term, count, sizeof *term);
+    gproji_give(&form->heap, spoke, spokes, sizeof *spoke);
+    gproji_give(&form->heap, term, count, sizeof *term);
     return gproji_built(form, s->group);
 }
 
@@ -21442,7 +21469,7 @@ GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int
     for (r = 0; r < part->count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         bool above = part->factor[r] < 0;
-        gproji_refresh_force_terms(part->form, part->vertex[r], above ? -1 : 1, term);
+        gproji_refresh_force_terms(part->form, part->element[r], above ? -1 : 1, term);
         gproj_system_set_row(system, group, r, NULL, -load_scale * part->factor[r] * part->given[above]);
     }
 }
@@ -21479,7 +21506,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
         for (k = 0; k < count && gproji_form_ready(form); ++k) {
             int32_t edge = edges ? edges[k] : k;
             if (form->statics->force[edge] < 0 || !gproji_is_finite(part->given[side])) continue;
-            part->vertex[part->count] = edge;
+            part->element[part->count] = edge;
             part->factor[part->count++] = (side ? -1 : 1) * (sections ? sections[k] : 1);
             gproji_set_force_terms(form, edge, term);
             gproj_system_add_row(form->system, part->group, 6, term, 0, edge);
@@ -21488,7 +21515,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     return gproji_built(form, part->group);
 }
 
-/* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->vertex holds the pairs e, f. */
+/* Rows y_e l_e - y_f l_f = 0 for opposite edges of quads; part->element holds the pairs e, f. */
 GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *system, int32_t group,
                                                    const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
@@ -21496,8 +21523,8 @@ GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *sys
     (void)progress;
     for (r = 0; r < part->count / 2; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
-        gproji_refresh_force_terms(part->form, part->vertex[2 * r], 1, term);
-        gproji_refresh_force_terms(part->form, part->vertex[2 * r + 1], -1, term + 6);
+        gproji_refresh_force_terms(part->form, part->element[2 * r], 1, term);
+        gproji_refresh_force_terms(part->form, part->element[2 * r + 1], -1, term + 6);
     }
 }
 
@@ -21521,8 +21548,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
         for (k = 0; mesh->face_degree[f] == 4 && k < 2; ++k, h = mesh->next[h]) {
             int32_t e = h / 2, opposite = mesh->next[mesh->next[h]] / 2;
             if (form->statics->force[e] < 0 || form->statics->force[opposite] < 0) continue;
-            part->vertex[part->count++] = e;
-            part->vertex[part->count++] = opposite;
+            part->element[part->count++] = e;
+            part->element[part->count++] = opposite;
             gproji_set_force_terms(form, e, term);
             gproji_set_force_terms(form, opposite, term + 6);
             gproj_system_add_row(form->system, part->group, 12, term, 0, f);
@@ -21581,7 +21608,7 @@ GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, g
     int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
     p->error = error;
-    gproji_pool_start(&p->pool, &form->own);
+    gproji_pool_start(&p->pool, &form->heap);
     p->start = (int64_t *)gproji_pool_take(&p->pool, edges + 1, sizeof *p->start);
     p->row = (int32_t *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->row);
     p->value = (double *)gproji_pool_take(&p->pool, 6 * edges, sizeof *p->value);
@@ -22051,7 +22078,7 @@ GPROJI_INTERNAL gproji_guard *gproji_guard_of(const gproji_part *part) { return 
 /* The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
     static const double none[3] = {0, 0, 0};
-    int32_t normal = part->form->normal[part->vertex[index]];
+    int32_t normal = part->form->normal[part->element[index]];
     gproji_copy3(normal >= 0 ? x + normal : gproji_guard_of(part)->area + 3 * (size_t)index, out);
     gproji_normalise3(out, none);
 }
@@ -22087,8 +22114,8 @@ GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, cons
         const double *first = guard->area + 3 * (size_t)i;
         double axis[2][3], was[3], is[3];
         if (gproji_length3(first) <= gproji_guard_area) continue;
-        gproji_area_vector(part->form->mesh, before, part->vertex[i], was);
-        gproji_area_vector(part->form->mesh, x, part->vertex[i], is);
+        gproji_area_vector(part->form->mesh, before, part->element[i], was);
+        gproji_area_vector(part->form->mesh, x, part->element[i], is);
         gproji_guard_normal(part, before, i, axis[0]);
         gproji_copy3(first, axis[1]);
         for (k = 0; k < 2; ++k) {
@@ -22125,7 +22152,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     if (!guard->area || gproji_add_group(part, 0) < 0) return;
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
-        part->vertex[count++] = f;
+        part->element[count++] = f;
         /* For each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
         for (c = 0, terms = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
@@ -22158,7 +22185,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
         form->system, part->group,
         gproj_fade(wanted ? gproji_guard_weight : 0, gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; i < part->count; ++i)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->vertex[i],
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
                            gproji_guard_of(part)->area + 3 * (size_t)i);
 }
 
@@ -22176,12 +22203,12 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
        |b - a|^2 >= part^2 |b0 - a0|^2                                                                               (2)
    Corners and edges without a size at the beginning are let go.
 
-   A row asks for no more than its corner or edge has when it is linearised, or a floor: they may shrink as far as they
-   must, but slowly, and a wish for more does not hold up the constraints. Many rows that must shrink still do: where the
-   constraints creep all ask for their floors only. Far from the end that would be too early, for shapes lose more there
-   than they must. Where equilibrium alone cannot hold with that, they ask for the least before they are let go: faces
-   that are not turned over, nor so concave that their sides cross. With planar faces it is better to let them go at
-   once: of 36 twisted patches 24 end whole so, and 20 with that stage (test_smooth).
+   A row asks for the size that its corner or edge has when it is linearised, up to the part above, and for no less than
+   a floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
+   creep all the same, every row asks for its floor only; far from the end that would be too early, for shapes lose more
+   there than they must. If equilibrium without planar faces finds no step even so, the rows ask for the least, faces
+   that are not turned over nor so concave that their sides cross, before they are let go. With planar faces they are
+   let go at once: of 36 twisted patches 24 end whole so, and 20 with that stage (test_smooth).
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22192,7 +22219,7 @@ static const double gproji_corner_least = 0.2;   /* and that below which it gets
 static const double gproji_corner_upright = 0.1; /* the same as seen along the face's first normal, */
 static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
-static const double gproji_corner_last = -0.2, gproji_corner_upright_last = 0.01; /* asked of all at last */
+static const double gproji_corner_last = -0.2, gproji_corner_upright_last = 0.01;  /* asked of all at last */
 static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
 static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
 static const double gproji_edge_floor = 0.15;  /* asked of shorter edges */
@@ -22504,12 +22531,14 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
 }
 
 /* ============================================================================================================
-   >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh, measure,
-   form, catalogue, statics, guard.
+   >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh,
+   measure, form, catalogue, statics, guard.
 
-   The loop's sentence names the row that is worst. A form knows more: why equilibrium was not found and which vertices
-   lack it, which demands could never hold, and which damage was done on the way. Each function below appends a clause
-   to the sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
+   The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
+   equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
+   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes: of flat faces), and which damage was done on
+   the way (gproji_tell_spoiled). Each function below appends a clause to the sentence, or nothing. They run when a
+   solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -22563,8 +22592,8 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 /* -- demands that can never hold -- */
 
 /* Marks coordinates that a constraint prescribes by a row with a single term, and those of corners that a gliding
-   boundary keeps: held[i] = 1, value[i] the prescribed value; else both are 0. Returns the number of vertices with three
-   such coordinates. */
+   boundary keeps: held[i] = 1, value[i] the prescribed value; else both are 0. Returns the number of vertices with
+   three such coordinates. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
     int32_t coordinates = 3 * form->mesh->vertex_count, i, r, k, count = 0;
     const gproji_part *part;
@@ -22587,7 +22616,7 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
     for (part = form->part; part; part = part->next) {
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            size_t v = 3 * (size_t)part->vertex[i];
+            size_t v = 3 * (size_t)part->element[i];
             if (gproji_curve_at(part, i)) continue;
             for (k = 0; k < 3; ++k) held[v + (size_t)k] = 1;
             gproji_copy3(form->original + v, value + v);
@@ -22616,8 +22645,8 @@ GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], doubl
     return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, none);
 }
 
-/* How far the held vertices of a face are from the plane that is normal to their area; *count: how many there are. 0 if
-   they lie along a line. */
+/* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
+   fan; *count: how many there are. 0 if they lie along a line. */
 GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
                                         int32_t *count) {
     double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
@@ -22636,19 +22665,20 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
     return most;
 }
 
-/* Planes spread. Three corners of a flat quad span its plane, unless they lie along a line. So the plane of a face with
-   three held vertices takes in every quad with three corners there, held ones or those of quads before; with a
-   boundary along a plane curve and a corner that has one face it takes in all. If it meets a vertex that is held
-   elsewhere, no flat faces can keep their corners; nor can they bear loads, if it takes in a loaded vertex with all
-   neighbours. A vertex that glides is in the plane if the whole side is, from one held vertex to the next. */
+/* Planes spread. A flat quad with three corners in a plane, not along a line, lies in that plane. So the plane of a
+   face with three held vertices spreads from quad to quad, to each that has three corners in it already; with a
+   boundary along a plane curve and a corner that has one face it spreads over all. If it reaches a vertex that is held
+   off it, no flat faces can keep their corners; if it contains a loaded vertex without support and all neighbours, no
+   forces balance a load out of the plane. A vertex that glides is in the plane if the whole side is, from one held
+   vertex to the next. */
 typedef struct gproji_spread {
     const gproj_form *form;
-    double *held;        /* 3 per vertex: is it held; the last plane that it was looked at for, negative if it is not
-                            in that one; the queue of vertices in the plane that are not held */
+    double *held;        /* 3 for each k: is vertex k held; the last plane that it was looked at for, negative if it is
+                            not in that one; the k-th vertex of the queue */
     const double *value; /* 3 per vertex: the place of a held one */
     double point[3], normal[3];
     int32_t plane;  /* number of this one, from 1 */
-    int32_t count;  /* vertices in the queue */
+    int32_t count;  /* vertices in the queue: in the plane and not held */
     int32_t vertex; /* held, and the farthest off the plane of those that it meets; -1: none is, */
     double off;     /* and how far */
 } gproji_spread;
@@ -22665,6 +22695,7 @@ GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v)
     return (gproji_stays(s, v) ? s->value : s->form->original) + 3 * (size_t)v;
 }
 
+/* The distance of a vertex from the plane. */
 GPROJI_INTERNAL double gproji_off_plane(const gproji_spread *s, int32_t v) {
     double offset[3];
     gproji_sub3(gproji_place_of(s, v), s->point, offset);
@@ -22679,15 +22710,15 @@ GPROJI_INTERNAL void gproji_look_along(gproji_spread *s, int32_t h) {
     while (first != h && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
     while (mesh->next[last] != first && !gproji_stays(s, mesh->origin[last])) last = mesh->next[last];
     in = gproji_off_plane(s, mesh->origin[last]) <= gproji_plane_near;
-    for (e = first; e != last; e = mesh->next[e])
-        in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
+    for (e = first; e != last; e = mesh->next[e]) in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
     for (e = last;; e = mesh->prev[e]) {
         if (!gproji_stays(s, mesh->origin[e])) s->held[3 * (size_t)mesh->origin[e] + 1] = in ? s->plane : -s->plane;
         if (e == first) break;
     }
 }
 
-/* Must the vertex be in the plane? */
+/* Must the vertex be in the plane: a held one by its distance, a gliding one by the whole side, others once
+   gproji_spread_to has taken them in? Remembers the answer. */
 GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
     double *looked = &s->held[3 * (size_t)v + 1];
     if (fabs(*looked) == s->plane) return *looked > 0;
@@ -22771,7 +22802,8 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
 }
 
 /* Names a plane that spreads from held vertices and leaves no flat faces, or none that carry. */
-GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, const double *value, gproj_result *result) {
+GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, const double *value,
+                                        gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
     size_t length = strlen(result->message);
@@ -22880,7 +22912,7 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
         if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             if (!(g->row[r].weight > 0)) continue;
-            e = stress ? part->vertex[r] : gproji_bounded_force(form, i, r, &sign);
+            e = stress ? part->element[r] : gproji_bounded_force(form, i, r, &sign);
             if (e < 0) continue;
             if (!stress && sign > 0) positive[force[e]] = 1;
             if (!stress && sign < 0) negative[force[e]] = 1;
@@ -22892,9 +22924,10 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
     return found;
 }
 
-/* Says which demand excludes equilibrium of any shape, or else which constraint holds it back most. */
+/* Says which demand excludes equilibrium of any shape, or else which constraint of a vertex holds it back most. */
 GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
     int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
+    gproj_group_info most;
     size_t length = strlen(result->message), size = sizeof result->message - length;
     if (floating >= 0) {
         gproji_format(result->message + length, size,
@@ -22904,15 +22937,17 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
             result->message + length, size,
             "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
     } else {
+        memset(&most, 0, sizeof most);
+        most.max = 1e-6;
         for (g = 0; g < gproj_system_group_count(form->system); ++g) {
             gproj_group_info info = gproj_system_group_info(form->system, g);
-            if (info.kind != GPROJ_CONSTRAINT || info.place != GPROJ_PLACE_VERTEX || g == form->statics->group)
-                continue;
-            if (!gproji_is_on(form, g) || !(info.max > 1e-6)) continue;
-            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
-                          info.worst_element, info.name);
-            return;
+            if (info.kind == GPROJ_CONSTRAINT && info.place == GPROJ_PLACE_VERTEX && g != form->statics->group &&
+                gproji_is_on(form, g) && info.max > most.max)
+                most = info;
         }
+        if (most.max > 1e-6)
+            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
+                          most.worst_element, most.name);
     }
 }
 
@@ -22928,7 +22963,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     bool follow; /* loads that vanish with the shape */
     int32_t r, e;
     if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
-    load = (double *)gproji_take(&form->own, count, sizeof *load);
+    load = (double *)gproji_take(&form->heap, count, sizeof *load);
     if (!load) {
         gproji_fail_memory(&form->error);
         *result = gproji_failed_result(gproj_form_error(form));
@@ -22938,7 +22973,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     loads = &s->loads;
     gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
-    gproji_give(&form->own, load, count, sizeof *load);
+    gproji_give(&form->heap, load, count, sizeof *load);
     g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
         if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
@@ -23079,7 +23114,8 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
    memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners, verdict. */
 
-/* x = the mesh's positions, and the start values of all unknowns there. */
+/* Sets x from the mesh's positions, in internal units, and gives all unknowns their start values for these (the parts'
+   `start`): the beginning of each solve and drag. */
 GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     double *x = gproj_system_values(form->system);
     gproji_part *part;
@@ -23345,8 +23381,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
     hooks->least = !gproji_is_on(form, form->planarity);
-    /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold with
-       whole faces where it does not with straight steps. */
+    /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold
+       with whole faces where it does not with straight steps. */
     if (smooth && (loop->earlier > 0 || gproji_is_on(form, form->planarity))) hooks->settle = gproji_settle_form;
     if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
         hooks->inspect = gproji_inspect_corners;
@@ -23419,17 +23455,17 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
     size_t count = (size_t)gproj_system_variable_count(s);
-    double *start = (double *)gproji_take(&form->own, count, sizeof *start);
+    double *start = (double *)gproji_take(&form->heap, count, sizeof *start);
     double *end =
-        (double *)gproji_take(&form->own, count, sizeof *end); /* of the best attempt, if it was not the last */
+        (double *)gproji_take(&form->heap, count, sizeof *end); /* of the best attempt, if it was not the last */
     double begun = gproji_now(s);
     bool started = form->statics && form->statics->started, here = true;
     gproj_solve_options how = *options;
     gproj_result result;
     int32_t used, attempt = 1, k;
     if (!start || !end) {
-        gproji_give(&form->own, start, count, sizeof *start);
-        gproji_give(&form->own, end, count, sizeof *end);
+        gproji_give(&form->heap, start, count, sizeof *start);
+        gproji_give(&form->heap, end, count, sizeof *end);
         gproji_fail_memory(&form->error);
         return gproji_failed_result(&form->error);
     }
@@ -23463,8 +23499,8 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
                       attempt);
     }
-    gproji_give(&form->own, start, count, sizeof *start);
-    gproji_give(&form->own, end, count, sizeof *end);
+    gproji_give(&form->heap, start, count, sizeof *start);
+    gproji_give(&form->heap, end, count, sizeof *end);
     return result;
 }
 
@@ -23542,8 +23578,8 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 }
 
 /* ============================================================================================================
-   >>state   A form's state as a block of bytes. Uses platform, error, stream, system, schur, loop, curve, form, catalogue,
-   statics, guard, corners, solve.
+   >>state   A form's state as a block of bytes. Uses platform, error, stream, system, schur, loop, curve, form,
+   catalogue, statics, guard, corners, solve.
 
    gproji_pass_state describes the format (see >>stream):
 
@@ -23562,8 +23598,8 @@ enum {
 
 /* -- the state -- */
 
-/* Passes the groups and what their rules keep, each behind a byte for whom it belongs to; groups that do not come in
-   lose their weight. */
+/* Passes the groups and the data of their rules. A byte before each tells which group of the library it is, or that it is
+   the caller's; groups of the library that a state does not have lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
@@ -23674,7 +23710,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     /* 3. All else that refreshes depend on. */
     for (part = form->part; part; part = part->next) {
         if (part->rule->own != GPROJI_OWN_NONE) continue;
-        hash = gproji_hash_integers(hash, part->vertex, (size_t)part->count);
+        hash = gproji_hash_integers(hash, part->element, (size_t)part->count);
         hash = gproji_hash_doubles(hash, part->given, 4);
         hash = gproji_hash_doubles(hash, part->factor, (size_t)part->capacity);
     }
@@ -23813,7 +23849,7 @@ typedef struct gproji_handle_list {
 } gproji_handle_list;
 
 struct gproj_drag {
-    gproji_heap own;
+    gproji_heap heap;
     gproj_error error;
     gproj_form *form;
     gproji_structure structure; /* of the system at the beginning */
@@ -23855,8 +23891,9 @@ GPROJI_INTERNAL void gproji_gather_handles(const gproj_drag *drag, const double 
     }
 }
 
-/* By how much the response in column i moves the handle that it began with, relative to a mesh without constraints. */
-GPROJI_INTERNAL double gproji_yield(const gproj_drag *drag, int32_t i) {
+/* How far the response in column i moves the handle's coordinate that it began with, relative to a mesh without
+   constraints: 1 is free, 0 is held or spanned by earlier columns. */
+GPROJI_INTERNAL double gproji_handle_freedom(const gproj_drag *drag, int32_t i) {
     size_t handle = (size_t)(drag->name[i] / 3), handles = (size_t)drag->info.handles;
     return drag->work[(size_t)i * (size_t)drag->columns + (size_t)drag->name[i]] /
            drag->handle.gram[handle * (handles + 1)];
@@ -23877,8 +23914,8 @@ GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
         int32_t name;
         /* 1. The pivot. */
         for (best = r, i = r + 1; i < drag->columns; ++i)
-            if (gproji_yield(drag, i) > gproji_yield(drag, best)) best = i;
-        if (!(gproji_yield(drag, best) > gproji_drag_stiff)) break;
+            if (gproji_handle_freedom(drag, i) > gproji_handle_freedom(drag, best)) best = i;
+        if (!(gproji_handle_freedom(drag, best) > gproji_drag_stiff)) break;
         other = drag->motion + n * (size_t)best, beside = drag->work + m * (size_t)best;
         for (k = 0; k < n; ++k) part = q[k], q[k] = other[k], other[k] = part;
         for (k = 0; k < m; ++k) part = work[k], work[k] = beside[k], beside[k] = part;
@@ -24084,6 +24121,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     return !pool->failed;
 }
 
+/* Frees the drag, so that the form can be solved again; puts nothing back. */
 GPROJI_INTERNAL void gproji_destroy_drag(gproj_drag *drag) {
     drag->form->drag = NULL;
     gproji_pool_give_all(&drag->pool);
@@ -24185,7 +24223,7 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     drag->form = form;
     if (options) drag->options = *options;
     if (drag->options.residual_bound > DBL_MAX) drag->options.residual_bound = 0;
-    gproji_pool_start(&drag->pool, &drag->own);
+    gproji_pool_start(&drag->pool, &drag->heap);
     gproji_error_clear(&drag->error);
     code = gproji_take_drag(drag, handles) ? gproji_write_state(form, drag->state, drag->state_size, error)
                                            : GPROJ_ERROR_MEMORY;
@@ -24316,7 +24354,7 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
     int32_t seen = 1, done = 0, count, k;
     if (!gproji_form_ready(form) || vertex < 0 || vertex >= form->mesh->vertex_count || !vertices || !weights) return 0;
     mesh = form->mesh;
-    distance = (double *)gproji_take(&form->own, (size_t)mesh->vertex_count, sizeof *distance);
+    distance = (double *)gproji_take(&form->heap, (size_t)mesh->vertex_count, sizeof *distance);
     if (!distance) {
         gproji_fail_memory(&form->error);
         return 0;
@@ -24345,7 +24383,7 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
         double t = count ? distance[vertices[count]] / reach : 0;
         weights[count] = (1 - t * t) * (1 - t * t);
     }
-    gproji_give(&form->own, distance, (size_t)mesh->vertex_count, sizeof *distance);
+    gproji_give(&form->heap, distance, (size_t)mesh->vertex_count, sizeof *distance);
     return count;
 }
 

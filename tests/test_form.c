@@ -1141,6 +1141,43 @@ GPROJT_TEST(planes_without_carriers_are_named) {
     }
 }
 
+/* Without equilibrium the verdict names the vertex that is farthest from where it is held, in whatever order the groups
+   were added. */
+GPROJT_TEST(the_farthest_holds_back_most) {
+    static const int32_t middle = 12, beside = 7;
+    int k;
+    for (k = 0; k < 2; ++k) {
+        gproj_mesh *mesh = gprojt_graph(4, gprojt_saddle);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads;
+        gproj_supports supports;
+        gproj_result result;
+        int32_t ring[25], v;
+        int order;
+        memset(&loads, 0, sizeof loads);
+        memset(&supports, 0, sizeof supports);
+        loads.area_load = 1;
+        for (v = 0; v < 25; ++v)
+            if (gproj_mesh_is_boundary_vertex(mesh, v)) ring[supports.count++] = v;
+        supports.vertex = ring;
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        gproj_add_compression(form, 0, NULL, 1);
+        for (order = 0; order < 2; ++order) {
+            int32_t vertex = (order + k) % 2 ? beside : middle;
+            double place[3];
+            memcpy(place, mesh->position + 3 * vertex, 3 * sizeof *place);
+            place[2] += vertex == beside ? 0.1 : 0.3;
+            gproj_add_targets(form, 1, &vertex, place, 1);
+        }
+        gproj_add_fixed(form, 0, NULL, 1);
+        result = gproj_solve(form, 60, NULL);
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
+        GPROJT_CHECK(strstr(result.message, "vertex 12 holds back most ('") != NULL);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
    bent more is named. */
 GPROJT_TEST(triangles_held_are_not_named) {
@@ -2436,6 +2473,7 @@ int main(void) {
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(planes_without_carriers_are_named);
+    GPROJT_RUN(the_farthest_holds_back_most);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);
