@@ -2043,12 +2043,6 @@ GPROJI_INTERNAL uint32_t gproji_big_divide(gproji_big *r, const gproji_big *s) {
     return (uint32_t)q;
 }
 
-GPROJI_INLINE double gproji_double_of_bits(uint64_t bits) {
-    double value;
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
-
 /* The bits of (m + s) 2^exponent, rounded to nearest even; m has the highest bit set; 0 < s < 1 if sticky, or s = 0. */
 GPROJI_INTERNAL uint64_t gproji_round_significand(uint64_t m, int32_t exponent, bool sticky) {
     int32_t drop = 11; /* bits of m below the last one kept */
@@ -2181,7 +2175,8 @@ GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value)
     if (i < size && (text[i] == '+' || text[i] == '-')) sign = (uint64_t)(text[i++] == '-') << 63;
     if (gproji_begins_with(text + i, size - i, "inf") || gproji_begins_with(text + i, size - i, "nan")) {
         bool nan = text[i] == 'n' || text[i] == 'N';
-        *value = gproji_double_of_bits(sign | (uint64_t)(nan ? 0xfff : 0xffe) << 51);
+        bits = sign | (uint64_t)(nan ? 0xfff : 0xffe) << 51;
+        memcpy(value, &bits, sizeof bits);
         return i + (gproji_begins_with(text + i, size - i, "infinity") ? 8 : 3);
     }
     /* 2. Digits, with a decimal point maybe. */
@@ -2218,7 +2213,8 @@ GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value)
         bool is_short = count <= 19 && power >= -27 && power <= 27;
         bits = is_short ? gproji_read_short(first, (int32_t)power) : gproji_read_long(digit, count, point);
     }
-    *value = gproji_double_of_bits(sign | bits);
+    bits |= sign;
+    memcpy(value, &bits, sizeof bits);
     return i;
 }
 
@@ -7546,7 +7542,7 @@ GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, do
 
 /* A hash by 64 bits at once, with the constants of FNV-1a (Fowler, Noll, Vo). Each step is one to one in the value, and
    in the hash: a change in one value never goes unnoticed. */
-GPROJI_INLINE uint64_t gproji_hash_start(void) { return 14695981039346656037u; }
+static const uint64_t gproji_hash_start = 14695981039346656037u;
 
 GPROJI_INLINE uint64_t gproji_hash_step(uint64_t hash, uint64_t value) {
     hash = (hash ^ value) * 1099511628211u;
@@ -8181,24 +8177,18 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     return true;
 }
 
-/* Counts all that was added to a system, except for safeguards' rows, which come on demand. Nothing is ever taken away,
-   so equal counts mean equal structure. */
+/* Counts what was added to a system. Nothing is ever taken away, so an equal number of all means equal structure. */
 typedef struct gproji_structure {
-    int32_t variables, groups;
-    int64_t rows;
+    int32_t groups;
+    int64_t all; /* variables, groups and rows, but for those of safeguards, which come on demand */
 } gproji_structure;
 
 GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
-    gproji_structure structure = {s->variable_count, s->group_count, 0};
+    gproji_structure structure = {s->group_count, (int64_t)s->variable_count + s->group_count};
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        structure.rows += s->group[i].role == GPROJI_SAFEGUARD ? 0 : s->group[i].row_count;
+        structure.all += s->group[i].role == GPROJI_SAFEGUARD ? 0 : s->group[i].row_count;
     return structure;
-}
-
-GPROJI_INTERNAL bool gproji_has_structure(const gproj_system *s, gproji_structure known) {
-    gproji_structure now = gproji_structure_of(s);
-    return now.variables == known.variables && now.groups == known.groups && now.rows == known.rows;
 }
 
 /* Counts the variables that the terms name. */
@@ -12164,32 +12154,20 @@ GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_system *s, gp
     }
 }
 
-/* Passes how a row stands in a solve under way: whether it acts, and the multiplier. */
+/* Passes how a row stands in a solve under way: whether it acts, and the multiplier; the weight of a safeguard's. */
 GPROJI_INTERNAL void gproji_pass_standing(gproji_stream *stream, gproj_system *s, int32_t group, int32_t row,
                                           gproji_passing passing) {
     gproji_group *g = &s->group[group];
     double none = 0;
+    if (g->role == GPROJI_SAFEGUARD) gproji_pass_number(stream, &g->row[row].weight, 0, 1e100);
     if (g->kind == GPROJ_BOUND) gproji_pass_bool(stream, &g->row[row].active);
     if (passing == GPROJI_PASS_NEAREST)
         gproji_pass_number(stream, g->multiplier ? &g->multiplier[row].y : &none, -DBL_MAX, DBL_MAX);
 }
 
-/* Passes a safeguard's row, which the system may have among others: see gproji_rest_safeguard. */
-GPROJI_INTERNAL void gproji_pass_safeguard_row(gproji_stream *stream, gproj_system *s, int32_t group, int32_t row,
-                                               gproji_passing passing) {
-    gproji_pass_number(stream, &s->group[group].row[row].weight, 0, 1e100);
-    gproji_pass_standing(stream, s, group, row, passing);
-}
-
-/* Before a safeguard's rows come in: those that do not come get no weight. */
-GPROJI_INTERNAL void gproji_rest_safeguard(gproji_stream *stream, gproj_system *s, int32_t group) {
-    gproji_group *g = &s->group[group];
-    int32_t r;
-    for (r = 0; stream->mode == GPROJI_READ && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
-}
-
-/* Passes a group but for a safeguard's rows: during a solve all numbers; else neither those in rows that a refresh
-   makes anew, nor any in a group whose rows are set when a solve begins (`anew`). */
+/* Passes a group: during a solve all numbers; else neither those in rows that a refresh makes anew, nor any in a group
+   whose rows are set when a solve begins (`anew`). A safeguard passes its rows itself: those that do not come in have
+   no weight. */
 GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, int32_t group, bool anew,
                                        gproji_passing passing) {
     gproji_group *g = &s->group[group];
@@ -12215,7 +12193,11 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
         if (reading) g->row[r].dormant = dormant;
     }
     if (reading && !same) s->schur.stale = true;
-    if ((anew && !passing) || g->role == GPROJI_SAFEGUARD) return;
+    if (anew && !passing) return;
+    if (g->role == GPROJI_SAFEGUARD) {
+        for (r = 0; reading && r < g->row_count; ++r) g->row[r].weight = 0, g->row[r].active = false;
+        return;
+    }
     gproji_pass_rows(stream, s, g, passing || !g->refresh);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) gproji_pass_standing(stream, s, group, r, passing);
 }
@@ -12367,14 +12349,6 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
     return true;
 }
 
-/* Evaluates all rows at x, between solves. */
-GPROJI_INTERNAL void gproji_see_here(gproj_system *s) {
-    s->solving = true;
-    gproji_refresh_groups(s);
-    gproji_evaluate(s);
-    s->solving = false;
-}
-
 /* Ends reading a state: the system's numbers are as saved. */
 GPROJI_INTERNAL void gproji_end_restoring(gproj_system *s) { s->changed = false; }
 
@@ -12494,19 +12468,21 @@ GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
 
 /* -- checks -- */
 
-/* Refuses coordinates that are not finite or too large; the sentence calls the points `noun`. */
-GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, const char *noun,
-                                                  gproj_error *error) {
+/* Refuses coordinates that are not finite or too large; the sentence calls the points `noun`. The error names a vertex
+   if they are the vertices. */
+GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, gproj_place place,
+                                                  const char *noun, gproj_error *error) {
     int32_t i, k;
     for (i = 0; i < count; ++i) {
         for (k = 0; k < 3; ++k) {
             double x = position[3 * i + k];
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
+            int32_t index = place == GPROJ_PLACE_NONE ? -1 : i;
             if (!gproji_is_finite(x))
-                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, place, index,
                                    "coordinate %s of %s %d is %g; give it a finite value", axis, noun, i, x);
             if (x > GPROJI_COORDINATE_MAX || x < -GPROJI_COORDINATE_MAX)
-                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, place, index,
                                    "coordinate %s of %s %d is %g, beyond 1e70; use a larger unit of length", axis, noun,
                                    i, x);
         }
@@ -12811,13 +12787,16 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
+    if (soup->vertex_count < 1 || soup->face_count < 0)
+        return gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex",
+                             soup->vertex_count, soup->face_count);
     if (soup->vertex_count > GPROJI_VERTICES_MAX)
         return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                            "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
     if (code) return code;
-    code = gproji_check_positions(soup->vertex_count, soup->position, "vertex", error);
+    code = gproji_check_positions(soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     soup->corner_count = (int32_t)corners;
     object->mesh.vertex_count = soup->vertex_count;
@@ -12859,12 +12838,6 @@ GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
     return object;
 }
 
-GPROJI_INTERNAL gproj_code gproji_check_counts(int32_t vertex_count, int32_t face_count, gproj_error *error) {
-    if (vertex_count >= 1 && face_count >= 0) return GPROJ_OK;
-    return gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex", vertex_count,
-                         face_count);
-}
-
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error) {
@@ -12872,8 +12845,7 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
     gproji_soup soup;
     gproji_mesh_object *object;
     gproji_error_clear(error);
-    if (gproji_check_counts(vertex_count, face_count, error)) return NULL;
-    if (!position || (face_count && (!face_degree || !face_vertex))) {
+    if (!position || (face_count > 0 && (!face_degree || !face_vertex))) {
         gproji_refuse(error, "an array of the mesh is NULL");
         return NULL;
     }
@@ -12907,11 +12879,11 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
         wrong = "either face_degree or degree is needed";
     if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
-    if (wrong || gproji_check_counts(data->vertex_count, data->face_count, error)) return NULL;
-    /* 2. Room, for as many corners as the degrees sum up to. */
+    if (wrong) return NULL;
+    /* 2. Room, for as many corners as the degrees sum up to; gproj_mesh_create refuses counts below 0. */
     gproji_pool_start(&pool, &heap);
-    position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
-    degree = (int32_t *)gproji_pool_take(&pool, data->face_count, sizeof *degree);
+    position = (double *)gproji_pool_take(&pool, gproji_max(0, data->vertex_count), 3 * sizeof *position);
+    degree = gproji_take_ints(&pool, gproji_max(0, data->face_count));
     for (f = 0; degree && f < data->face_count; ++f)
         degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
     code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
@@ -13937,7 +13909,7 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
         return gproji_refuse(error,
                              "write: there is no mesh or no function to write with, or the format is neither OBJ nor "
                              "OFF");
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "write: the function to write with has stopped");
@@ -14041,7 +14013,7 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT)
         return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
                              gproji_quote_path(path, quote));
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     problem = gproji_save_begin(&saving, path);
     if (!problem) {
@@ -14472,7 +14444,7 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     if (options->stencil_level < 0 || options->stencil_level >= options->levels)
         return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
                              options->stencil_level, options->levels, options->levels - 1);
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error);
+    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     /* 2. Loop's triangles: two with the same corners would have fine faces in the middle with three common edges. */
     for (f = 0; loop && f < mesh->face_count; ++f) {
@@ -14947,7 +14919,7 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    bool valid = gproji_check_positions(count + 1, x, "point", error) == GPROJ_OK;
+    bool valid = gproji_check_positions(count + 1, x, GPROJ_PLACE_VERTEX, "point", error) == GPROJ_OK;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
     for (s = 0; valid && s <= count; ++s)
         for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
@@ -15199,7 +15171,9 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     bool complete;
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
-    if (!mesh->face_count || gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    if (!mesh->face_count ||
+        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+        return NULL;
     surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface), error);
     if (!surface) return NULL;
     keep = &surface->pool;
@@ -17174,7 +17148,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
                     mesh ? "the distance of the offset is not a finite number" : "the mesh to offset is NULL");
         return NULL;
     }
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, "vertex", error)) return NULL;
+    if (gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error)) return NULL;
     offset = gproj_mesh_copy(mesh, host, error);
     if (!offset) return NULL;
     gproji_pool_start(&pool, &gproji_mesh_owner(offset)->heap);
@@ -17183,7 +17157,8 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
     code = x && field(&pool, mesh, x) ? GPROJ_OK : gproji_fail_memory(error);
     for (i = 0; !code && i < count; ++i) offset->position[i] += distance * x[i];
     gproji_pool_give_all(&pool);
-    if (!code) code = gproji_check_positions(mesh->vertex_count, offset->position, "offset vertex", error);
+    if (!code)
+        code = gproji_check_positions(mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error);
     if (!code) return offset;
     gproj_mesh_destroy(offset);
     return NULL;
@@ -17757,7 +17732,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                              f->points ? "a closed curve of %d points; it needs at least 3"
                                        : "the points of the curve are NULL",
                              f->count);
-    code = gproji_check_positions(f->count, f->points, "point", f->error);
+    code = gproji_check_positions(f->count, f->points, GPROJ_PLACE_VERTEX, "point", f->error);
     if (code) return code;
     for (i = 0; i < f->count; ++i) {
         j = i + 1 < f->count ? i + 1 : 0;
@@ -18867,7 +18842,8 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
    not be, in the mesh's units or in the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_error *error) {
     int32_t i, k;
-    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, "vertex", error)) return false;
+    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+        return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
@@ -19147,7 +19123,7 @@ GPROJI_INTERNAL bool gproji_take_list(gproj_form *form, const char *name, gproj_
     return form->error.code == GPROJ_OK;
 }
 
-/* Copies the caller's list to a new part; NULL after an error. */
+/* Copies the caller's list (0, NULL: all elements) to a new part; NULL after an error. */
 GPROJI_INTERNAL gproji_part *gproji_new_list_part(gproj_form *form, const gproji_rule *rule, int32_t count,
                                                   const int32_t *list) {
     gproji_part *part;
@@ -19170,12 +19146,6 @@ GPROJI_INTERNAL gproji_part *gproji_new_selected_part(gproj_form *form, const gp
     for (v = 0, count = 0; part && v < form->mesh->vertex_count; ++v)
         if (select(form, v)) part->element[count++] = v;
     return part;
-}
-
-GPROJI_INTERNAL bool gproji_select_all(const gproj_form *form, int32_t vertex) {
-    (void)form;
-    (void)vertex;
-    return true;
 }
 
 GPROJI_INTERNAL bool gproji_select_boundary(const gproj_form *form, int32_t vertex) {
@@ -19259,7 +19229,7 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
     gproji_part *part = gproji_new_list_part(form, &gproji_targets_rule, count, vertices);
     if (part && part->count > 0 && !positions)
         return gproji_none(gproji_refuse(&form->error, "targets: there are no positions"));
-    if (part && gproji_check_positions(part->count, positions, "target", &form->error)) return -1;
+    if (part && gproji_check_positions(part->count, positions, GPROJ_PLACE_NONE, "target", &form->error)) return -1;
     return gproji_add_points(part, positions, weight);
 }
 
@@ -19271,7 +19241,8 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
     if (!part || part->rule != &gproji_targets_rule || !positions)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "group %d has no targets, or there are no positions", group);
-    if (gproji_check_positions(part->count, positions, "target", &form->error)) return form->error.code;
+    if (gproji_check_positions(part->count, positions, GPROJ_PLACE_NONE, "target", &form->error))
+        return form->error.code;
     for (i = 0; i < part->count; ++i) {
         double p[3];
         gproji_to_internal(form, positions + 3 * (size_t)i, p);
@@ -19281,7 +19252,7 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
 }
 
 GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
-    return gproji_add_points(gproji_new_selected_part(form, &gproji_closeness_rule, gproji_select_all), NULL, weight);
+    return gproji_add_points(gproji_new_list_part(form, &gproji_closeness_rule, 0, NULL), NULL, weight);
 }
 
 /* -- planar faces -- */
@@ -19637,7 +19608,7 @@ static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,  
                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_reference_acts};
 
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
-    gproji_part *part = gproji_new_selected_part(form, &gproji_reference_rule, gproji_select_all);
+    gproji_part *part = gproji_new_list_part(form, &gproji_reference_rule, 0, NULL);
     const gproj_surface **kept = (const gproj_surface **)gproji_part_take(part, 1, sizeof *kept);
     int32_t i;
     if (!kept) return -1;
@@ -22460,14 +22431,13 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
     gproji_pass_doubles(stream, guard->axis, 3 * (size_t)mesh->face_count);
     gproji_pass_integer(stream, &guard->rounds, 0, INT32_MAX / 2);
     count = gproji_pass_integer(stream, &count, 0, count);
-    gproji_rest_safeguard(stream, s, part->group);
     for (r = 0; r < count && !stream->wrong; ++r) {
         int32_t item = gproji_comes_in(stream) ? 0 : guard->item[r];
         item = gproji_pass_integer(stream, &item, 0, guard->items - 1);
         if (stream->wrong || guard->row[item] < 0)
             gproji_spoil(stream, "a corner or edge has no row");
         else
-            gproji_pass_safeguard_row(stream, s, part->group, guard->row[item], passing);
+            gproji_pass_standing(stream, s, part->group, guard->row[item], passing);
     }
     if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, NULL);
 }
@@ -23159,9 +23129,6 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     return false;
 }
 
-/* Half of the iterations, rounded up and at least 1. */
-GPROJI_INTERNAL int32_t gproji_half(int32_t iterations) { return gproji_max(1, iterations / 2 + iterations % 2); }
-
 /* Weights of a step's differences along edges, and of a vertex's displacement relative to that. With more of the latter
    meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
@@ -23228,7 +23195,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
                                 : own == GPROJI_OWN_DRAG_HANDLES ? &gproji_drag_handles_rule
                                                                  : NULL;
     if (!gproji_form_ready(form) || gproji_own_part(form, own)) return;
-    if (points) gproji_add_points(gproji_new_selected_part(form, points, gproji_select_all), NULL, 0);
+    if (points) gproji_add_points(gproji_new_list_part(form, points, 0, NULL), NULL, 0);
     if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
     if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
@@ -23243,7 +23210,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
    ends, 0 without any. If the nearest mesh is asked for, closeness defines "near". */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others;
-    int32_t half = gproji_half(iterations), closeness, i;
+    int32_t half = gproji_max(1, iterations - iterations / 2), closeness, i;
     gproj_schedule schedule;
     if (wanted) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
     closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
@@ -23307,7 +23274,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool smooth = options && options->smooth && !nearest;
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric;
     const gproji_part *part;
-    int32_t guided;
+    int32_t guided, guiding;
     solve->on = solve->finished = false;
     if (form->drag) {
         solve->loop.result =
@@ -23337,7 +23304,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
-    solve->loop.wish_last = gproji_half(smooth ? gproji_min(iterations, 20) : iterations);
+    guiding = smooth ? gproji_min(iterations, 20) : iterations;
+    solve->loop.wish_last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
     return solve->on;
 failed:
@@ -23444,7 +23412,10 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     for (part = form->part; part; part = part->next)
         if (part->rule->acts && part->rule->acts->refresh && part->rule->acts->start) part->rule->acts->start(part);
     memcpy(gproj_system_values(form->system), end, (size_t)gproj_system_variable_count(form->system) * sizeof *end);
-    gproji_see_here(form->system);
+    gproji_hold(form->system, true);
+    gproji_refresh_groups(form->system);
+    gproji_evaluate(form->system);
+    gproji_hold(form->system, false);
     gproji_store_positions(form, form->before);
 }
 
@@ -23569,7 +23540,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
     if (!(seconds >= 0) || (seconds > 0 && gproji_is_finite(seconds) && !form->host.clock.now))
         return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
                                  "advance: seconds must not be negative, and need a clock in the host");
-    if (solve->on && !gproji_has_structure(form->system, solve->structure))
+    if (solve->on && gproji_structure_of(form->system).all != solve->structure.all)
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
@@ -23598,8 +23569,8 @@ enum {
 
 /* -- the state -- */
 
-/* Passes the groups and the data of their rules. A byte before each tells which group of the library it is, or that it is
-   the caller's; groups of the library that a state does not have lose their weight. */
+/* Passes the groups and the data of their rules. A byte before each tells which group of the library it is, or that it
+   is the caller's; groups of the library that a state does not have lose their weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
     int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
     bool seen[GPROJI_OWN_COUNT] = {false};
@@ -23694,7 +23665,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     const gproji_statics *statics = form->statics;
     const gproji_part *part;
     size_t vertices = (size_t)mesh->vertex_count;
-    uint64_t hash = gproji_hash_start();
+    uint64_t hash = gproji_hash_start;
     int32_t i;
     /* 1. The mesh with the positions that the form was made with, and the variables. */
     hash = gproji_hash_integers(hash, mesh->face_degree, (size_t)mesh->face_count);
@@ -23749,7 +23720,7 @@ GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, si
     gproji_pass_bytes(&stream, size, 8);
     gproji_pass_bytes(&stream, gproji_fingerprint(form), 8);
     gproji_pass_state(&stream, form);
-    gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start(), out, stream.at), 8);
+    gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start, out, stream.at), 8);
     if (!stream.wrong) return GPROJ_OK;
     memset(out, 0, size);
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "state: it cannot be saved: %s", stream.wrong);
@@ -23779,7 +23750,7 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it says that it has %l bytes, but there are %l", (int64_t)stated, (int64_t)size);
     tail.at = size - GPROJI_STATE_TAIL;
-    if (gproji_hash_bytes(gproji_hash_start(), in.in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
+    if (gproji_hash_bytes(gproji_hash_start, in.in, tail.at) != gproji_pass_bytes(&tail, 0, 8))
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
                            "state: it is damaged, its bytes do not have its checksum");
     if (gproji_pass_bytes(&in, 0, 8) != gproji_fingerprint(form))
@@ -23993,13 +23964,6 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
 
 /* -- moves -- */
 
-/* Refuses positions of handles that are not finite or far too large. */
-GPROJI_INTERNAL gproj_code gproji_check_handle_positions(int32_t handles, const double *positions, gproj_error *error) {
-    gproj_code code = gproji_check_positions(handles, positions, "handle", error);
-    if (code && error) error->place = GPROJ_PLACE_NONE, error->index = -1; /* a handle is no vertex */
-    return code;
-}
-
 /* x = base + Q m, with the m that brings the handles closest to their wanted places. */
 GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
@@ -24026,7 +23990,7 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     } else if (drag->released) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: the handles have been released; end or cancel it");
-    } else if (!gproji_has_structure(drag->form->system, drag->structure)) {
+    } else if (gproji_structure_of(drag->form->system).all != drag->structure.all) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
     }
@@ -24039,7 +24003,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
-        gproji_check_handle_positions(drag->info.handles, positions, &drag->error) != GPROJ_OK)
+        gproji_check_positions(drag->info.handles, positions, GPROJ_PLACE_NONE, "handle", &drag->error) != GPROJ_OK)
         return drag->error.code;
     behind = drag->info.behind;
     bound = drag->options.residual_bound;
@@ -24206,7 +24170,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                                "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
-    return h->position ? gproji_check_handle_positions(h->count, h->position, error) : GPROJ_OK;
+    return h->position ? gproji_check_positions(h->count, h->position, GPROJ_PLACE_NONE, "handle", error) : GPROJ_OK;
 }
 
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,
