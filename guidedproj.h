@@ -1625,7 +1625,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
    >>api-drag   Dragging: a form follows one or several handles at screen rate, and constraints go on holding.
 
    gproj_drag_begin linearises everything that must hold at the mesh as it is: G dx = 0 is the tangent space of the
-   constraints (paper, section 4). gproj_drag_move then finds, from the prepared factorisation,
+   constraints (paper 4). gproj_drag_move then finds, from the prepared factorisation,
        the dx with G dx = 0 and S'dv = (S'S) d that has the smallest |dv|^2 + 0.0001 |da|^2
    with the handles' displacements d, the vertices' part dv and the other part da of dx (normals, axes, forces), and the
    weights S of the handles' vertices, one column a handle. So a vertex goes to the place it is dragged to, and a point
@@ -7577,7 +7577,7 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
    error, parallel, vector, dense, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. Rows
-       phi(x) = sum a x_i x_j + sum a x_i + constant
+       phi(x) = sum a x_i x_j + sum b x_i + c
    with weight w and gradient g contribute w^2 phi^2 to the merit. An iteration linearises all rows and minimises
    sum w^2 (phi + g'dx)^2 + eps^2 |dx|^2, which is Gauss and Newton's step with Levenberg's damping:
        A dx = -sum w^2 phi g,   A = sum w^2 g g' + eps^2 I.
@@ -7617,7 +7617,7 @@ typedef struct gproji_row {
     int32_t element;
     bool wide;    /* dense: not in the sparse matrix */
     bool run;     /* contiguous linear row: global, with linear terms in consecutive variables */
-    bool active;  /* acts on the next step: has a weight, and is no bound that the step keeps anyway */
+    bool active;  /* takes part in the next step: an equation always, a bound if the step would else violate it */
     bool dormant; /* a guard's row that has not come near to acting, and has no multiplier */
 } gproji_row;
 
@@ -7640,15 +7640,16 @@ typedef struct gproji_tally {
 } gproji_tally;
 
 static const double gproji_weight_most = 1e50; /* a constant, not a literal, which x87 keeps with more digits */
-static const double gproji_guard_slack = 0.2;  /* steps may violate a guard's rows by so much */
+static const double gproji_guard_slack = 0.2;  /* how far a step may leave a guard's row below 0 */
 
-/* What a group's rows are to steps. Those from GPROJI_GUARD on are not in merit, residual and verdict. */
+/* What a group's rows are to steps. Those from GPROJI_GUARD on are not in merit, residual and verdict. When bounds
+   begin and cease to act: gproji_switch_bounds. */
 typedef enum gproji_role {
     GPROJI_ORDINARY,
-    GPROJI_LAZY,      /* bounds for whose sake a good step is not found again, however near steps lead */
+    GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
-    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added on demand and are no structure */
+    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure */
     GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
@@ -7677,7 +7678,7 @@ typedef struct gproji_tallies {
 
 /* How far steps may go beyond a guard's rows. */
 typedef struct gproji_guarding {
-    double slack;        /* steps may violate its rows by so much */
+    double slack;        /* how far a step may leave its rows below 0 before they act */
     int32_t activations; /* how often dormant rows were activated */
 } gproji_guarding;
 
@@ -7686,6 +7687,7 @@ typedef struct gproji_group_room {
     size_t row, term, share, local;
 } gproji_group_room;
 
+/* A group as the system keeps it; gproj_group is the caller's description. A form knows more of it: gproji_part. */
 typedef struct gproji_group {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -10423,12 +10425,12 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
-/* A step may violate bounds by so much of the largest residual: they act on the next one then. */
+/* A step may violate bounds by this part of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.1;
 /* A step that lowers the merit by less than this part of the linearised rows' promise is bent, by at most so much of
    the square of the step's length. */
 static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
-/* A step that lowers the merit to so much need not be found again for lazy bounds. */
+/* A step that lowers the merit to this part need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
@@ -17038,17 +17040,18 @@ enum {
     GPROJI_PARALLEL_STEPS = 1000
 };
 
-/* out = A x - distance * b: A the normal equations' matrix, b their right-hand side. */
-GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double distance, double *out) {
+/* out = A x - part * b: A the normal equations' matrix, b their right-hand side for the distance 1. With part 1 this is
+   half the gradient at x, with 0 the matrix times x. */
+GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const double *x, double part, double *out) {
     const gproj_mesh *mesh = p->mesh;
     int32_t e, f, v, h, k;
     memset(out, 0, 3 * (size_t)mesh->vertex_count * sizeof *out);
-    for (f = 0; !p->boundary && f < mesh->face_count; ++f) { /* n (n'x - distance) at each corner */
+    for (f = 0; !p->boundary && f < mesh->face_count; ++f) { /* n (n'x - part) at each corner */
         const double *n = p->normal + 3 * (size_t)f;
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             size_t i = 3 * (size_t)mesh->origin[h];
-            gproji_add_scaled3(gproji_dot3(n, x + i) - distance, n, out + i);
+            gproji_add_scaled3(gproji_dot3(n, x + i) - part, n, out + i);
         }
     }
     for (e = 0; e < mesh->edge_count; ++e) { /* P (x_j - x_i) */
@@ -23786,7 +23789,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
    vector, dense, cholesky, system, schur, loop, mesh, form, catalogue, guard, solve, state.
 
-   Based on Tang et al. (2014), section 2. With the metric D (1 for vertices, light^2 for other variables), a force f at
+   Based on Tang et al. (2014), section 4. With the metric D (1 for vertices, light^2 for other variables), a force f at
    the handles' vertices brings about the smallest dx in the tangent space, a projection,
        min 1/2 dx'D dx - f'dx,    G dx = 0.                                                                    (1)
    It is the limit of dx <- (G'G + eps^2 D)^-1 eps^2 D dx from dx = D^-1 f (the method of multipliers, or a proximal
