@@ -62,7 +62,7 @@ static double forward_error(int32_t n, int32_t w, const double *a, double *b, co
 static void check_panel_with(const gproji_kernels *kernels, int32_t w, int32_t u, uint64_t *seed) {
     int32_t n = w + u, update_rows = gproji_round_up(u, GPROJI_BLOCK), rows = storage(w, w) + update_rows, i, j;
     gproji_shape shape = gproji_shape_of(w, u);
-    size_t panel_size = (size_t)gprojt_entries(shape);
+    size_t panel_size = (size_t)entries(shape);
     size_t update_size = (size_t)gproji_update_entries(update_rows) + 1;
     double *a = (double *)malloc((size_t)n * (size_t)n * sizeof(double));
     double *panel = (double *)calloc(panel_size, sizeof(double)),
@@ -149,7 +149,7 @@ GPROJT_TEST(dense_failing_pivots) {
         W = 140
     };
     const gproji_shape shape = gproji_shape_of(W, 0);
-    const size_t size = (size_t)gprojt_entries(shape) * sizeof(double);
+    const size_t size = (size_t)entries(shape) * sizeof(double);
     double *panel = (double *)malloc(size), inverse[W];
     const gproji_kernels *kernels;
     int32_t column, i, kind, b;
@@ -250,7 +250,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     gproji_shape shape = gproji_shape_of(w, u);
     int32_t n = w + u, rows = gproji_round_up(below, GPROJI_BLOCK);
     int32_t child_w = 5, groups = 0, i, j, left = n - below, next = 0;
-    size_t panel_size = (size_t)gprojt_entries(shape),
+    size_t panel_size = (size_t)entries(shape),
            update_size = (size_t)gproji_update_entries(gproji_round_up(u, GPROJI_BLOCK));
     double *values = (double *)calloc(panel_size + 1, sizeof(double));
     double *update = (double *)calloc(update_size + 1, sizeof(double)), kept = 0;
@@ -320,7 +320,7 @@ GPROJT_TEST(dense_columns_of_panels) {
                 GPROJT_CHECK(place_of_row(shape, shape.stride, j) == place_of_row(shape, shape.stride, first_of) +
                                                                          (int64_t)begin_of(j - first_of, chunk, left));
             }
-            GPROJT_CHECK(gprojt_entries(shape) == end && shape.stride >= storage(w, w) + below);
+            GPROJT_CHECK(entries(shape) == end && shape.stride >= storage(w, w) + below);
             GPROJT_CHECK((w + shape.shift) % GPROJI_BLOCK == 0 && (shape.last < 0 || shape.stride % 64 != 0));
         }
 }
