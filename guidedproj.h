@@ -1490,10 +1490,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
    - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, edges when
-     they become shorter than 0.2 of their length, and planar faces when they bend by more than 95 degrees at an edge, in
-     place of the guard: faces stay convex, upright and apart where they were. The rows come as they are needed, as the
-     group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a limit of
-     50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
+     they become shorter than 0.2 of their length, and planar faces when they bend by more than 95 degrees at an edge,
+     in place of the guard: faces stay convex, upright and apart where they were. The rows come as they are needed, as
+     the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
+     limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
      most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
