@@ -10450,7 +10450,7 @@ enum {
     GPROJI_REFINEMENTS = 3,      /* rounds at most for systems with wide rows */
     GPROJI_ACTIVATIONS = 4,      /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,       /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_MOST = 50,       /* of more iterations safeguards act in half, and in no more than this */
+    GPROJI_SAFE_MOST = 50,       /* safeguards act in half of more iterations than this, and in no more */
     GPROJI_SAFE_LAST = 30,       /* iterations after that in which they ask for the least */
     GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
     GPROJI_WARY = 4,             /* iterations with a cautious stiffness after a step has failed or was short */
@@ -10856,8 +10856,8 @@ typedef struct gproji_course {
     const gproji_hinge *hinge;
 } gproji_course;
 
-/* The merit M(t) at x + t dx as a polynomial. Each row is phi + t h + t^2 q with h = grad phi'dx and the quadratic form
-   q = 1/2 dx'H dx of its products; rows that a refresh linearises have none. */
+/* The merit M(t) at x + t dx: a polynomial, and hinges for bounds. Each row is phi + t h + t^2 q with h = grad phi'dx
+   and the quadratic form q = 1/2 dx'H dx of its products; rows that a refresh linearises have none. */
 GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m) {
     int32_t i, r;
     memset(m, 0, sizeof *m);
@@ -10969,8 +10969,7 @@ GPROJI_INTERNAL double gproji_try_merit(gproj_system *s) {
 }
 
 /* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is
-   above the merit that `course` predicts without settling, the end is tried without as well, and the better one kept.
-   */
+   above the merit that `course` predicts without settling, the end without it is tried, too; the better one is kept. */
 GPROJI_INTERNAL double gproji_arrive(gproji_loop *loop, double t, const gproji_course *course) {
     gproj_system *s = loop->system;
     double merit = gproji_try_merit(s), plain;
@@ -14601,8 +14600,7 @@ typedef struct gproji_node {
 
 typedef struct gproji_hierarchy {
     const double *point;   /* 3 numbers each, the caller's */
-    const int32_t *vertex; /* `corners` for each triangle; NULL: segment i runs from point i to point i + 1 */
-    int32_t corners;       /* 2: segments, 3: triangles */
+    const int32_t *vertex; /* 3 for each triangle; NULL: segment i runs from point i to point i + 1 */
     int32_t item_count, node_count;
     int32_t *item;     /* item_count: a permutation */
     gproji_node *node; /* room for item_count */
@@ -14614,15 +14612,15 @@ enum {
 };
 
 GPROJI_INLINE const double *gproji_item_corner(const gproji_hierarchy *tree, int32_t item, int32_t corner) {
-    int32_t at = tree->vertex ? tree->vertex[(size_t)tree->corners * (size_t)item + (size_t)corner] : item + corner;
+    int32_t at = tree->vertex ? tree->vertex[3 * (size_t)item + (size_t)corner] : item + corner;
     return tree->point + 3 * (size_t)at;
 }
 
 GPROJI_INTERNAL void gproji_item_box(const gproji_hierarchy *tree, int32_t item, double low[3], double high[3]) {
-    int32_t c, k;
+    int32_t corners = tree->vertex ? 3 : 2, c, k;
     gproji_copy3(gproji_item_corner(tree, item, 0), low);
     gproji_copy3(low, high);
-    for (c = 1; c < tree->corners; ++c)
+    for (c = 1; c < corners; ++c)
         for (k = 0; k < 3; ++k) {
             low[k] = gproji_fmin(low[k], gproji_item_corner(tree, item, c)[k]);
             high[k] = gproji_fmax(high[k], gproji_item_corner(tree, item, c)[k]);
@@ -14726,7 +14724,7 @@ GPROJI_INTERNAL bool gproji_hierarchy_build(gproji_pool *keep, gproji_hierarchy 
     gproji_pool pool;
     int32_t i, axis;
     bool complete;
-    tree->point = point, tree->vertex = vertex, tree->corners = vertex ? 3 : 2;
+    tree->point = point, tree->vertex = vertex;
     tree->item_count = count, tree->node_count = 0;
     tree->item = gproji_take_ints(keep, count);
     tree->node = (gproji_node *)gproji_pool_take(keep, count, sizeof(gproji_node));
@@ -14823,9 +14821,9 @@ GPROJI_INTERNAL double gproji_closest_on_triangle(const double *const corner[3],
 GPROJI_INTERNAL double gproji_closest_on_item(const gproji_hierarchy *tree, int32_t item, const double p[3],
                                               double out[3], double weight[3]) {
     const double *corner[3];
-    int32_t c;
-    for (c = 0; c < tree->corners; ++c) corner[c] = gproji_item_corner(tree, item, c);
-    if (tree->corners == 3) return gproji_closest_on_triangle(corner, p, out, weight);
+    int32_t corners = tree->vertex ? 3 : 2, c;
+    for (c = 0; c < corners; ++c) corner[c] = gproji_item_corner(tree, item, c);
+    if (corners == 3) return gproji_closest_on_triangle(corner, p, out, weight);
     weight[1] = gproji_closest_on_segment(corner[0], corner[1], p, out);
     weight[0] = 1 - weight[1];
     return gproji_square_distance3(out, p);
@@ -18727,7 +18725,7 @@ struct gproji_part {
     int32_t group;
     int32_t count;       /* entries in use, in `element` and in lists by entry */
     int32_t capacity;    /* entries that these have room for */
-    int32_t *element;    /* with rows: vertices, edges, faces or half-edges, as the rule says; ~v in conicality */
+    int32_t *element;    /* elements with rows: vertices, edges, faces or half-edges; ~v in conicality */
     double given[4];     /* numbers from the caller, in internal units (stresses in theirs): a target, bounds, prices */
     double *factor;      /* more of them, one per entry; or NULL */
     int32_t curve_count; /* curves that the part owns, in internal units */

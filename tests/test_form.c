@@ -1109,6 +1109,17 @@ GPROJT_TEST(planes_that_spread_are_named) {
         }
 }
 
+/* Equilibrium with the boundary as supports, or all vertices. */
+static void gprojt_add_supported(gproj_form *form, const gproj_mesh *mesh, const gproj_loads *loads, bool all) {
+    gproj_supports supports;
+    int32_t list[25], v;
+    memset(&supports, 0, sizeof supports);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        if (all || gproj_mesh_is_boundary_vertex(mesh, v)) list[supports.count++] = v;
+    supports.vertex = list;
+    gproj_add_equilibrium(form, loads, &supports, 1);
+}
+
 /* A flat boundary spreads its plane over all flat quads, in which loads along the plane can be carried and others not,
    unless the boundary is free or all vertices are supports. */
 GPROJT_TEST(planes_without_carriers_are_named) {
@@ -1119,18 +1130,14 @@ GPROJT_TEST(planes_without_carriers_are_named) {
         gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads;
-        gproj_supports supports;
         gproj_result result;
-        int32_t ring[25], v;
+        int32_t v;
         memset(&loads, 0, sizeof loads);
-        memset(&supports, 0, sizeof supports);
         memset(point_load, 0, sizeof point_load);
-        for (v = 0; v < 25; ++v)
-            if (gproj_mesh_is_boundary_vertex(mesh, v) || k == 3) ring[supports.count++] = v;
         for (v = 0; v < 9; ++v) point_load[3 * inner[v] + (k == 1 ? 0 : 2)] = -1;
-        loads.point_load = point_load, supports.vertex = ring;
+        loads.point_load = point_load;
         gproj_add_planarity(form, 1);
-        gproj_add_equilibrium(form, &loads, &supports, 1);
+        gprojt_add_supported(form, mesh, &loads, k == 3);
         if (k != 2) gproj_add_fixed_boundary(form, 1);
         result = gproj_solve(form, 40, NULL);
         GPROJT_CHECK((strstr(result.message, "cannot carry its load") != NULL) == (k == 0));
@@ -1150,17 +1157,11 @@ GPROJT_TEST(the_farthest_holds_back_most) {
         gproj_mesh *mesh = gprojt_graph(4, gprojt_saddle);
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads;
-        gproj_supports supports;
         gproj_result result;
-        int32_t ring[25], v;
         int order;
         memset(&loads, 0, sizeof loads);
-        memset(&supports, 0, sizeof supports);
         loads.area_load = 1;
-        for (v = 0; v < 25; ++v)
-            if (gproj_mesh_is_boundary_vertex(mesh, v)) ring[supports.count++] = v;
-        supports.vertex = ring;
-        gproj_add_equilibrium(form, &loads, &supports, 1);
+        gprojt_add_supported(form, mesh, &loads, false);
         gproj_add_compression(form, 0, NULL, 1);
         for (order = 0; order < 2; ++order) {
             int32_t vertex = (order + k) % 2 ? beside : middle;
@@ -1176,6 +1177,21 @@ GPROJT_TEST(the_farthest_holds_back_most) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* A position in a list of targets is no vertex: the sentence names the place in the list, the error no element. */
+GPROJT_TEST(refused_targets_name_no_vertex) {
+    static const int32_t vertex[2] = {3, 7};
+    double place[6] = {0, 0, 0, 0, 0, 0};
+    gproj_mesh *mesh = gprojt_graph(4, gprojt_saddle);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    place[4] = HUGE_VAL;
+    GPROJT_CHECK(gproj_add_targets(form, 2, vertex, place, 1) == -1);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(gproj_form_error(form)->place == GPROJ_PLACE_NONE && gproj_form_error(form)->index == -1);
+    GPROJT_CHECK(strstr(gproj_form_error(form)->message, "of target 1 is ") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 /* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
@@ -2474,6 +2490,7 @@ int main(void) {
     GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(the_farthest_holds_back_most);
+    GPROJT_RUN(refused_targets_name_no_vertex);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(gauss_fairness_needs_planarity);
