@@ -1489,11 +1489,12 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
-   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, and edges
-     when they become shorter than 0.2 of their length, in place of the guard: faces stay convex and upright where they
-     were. The rows come as they are needed, as the group "corners". If no step is found with them, or after half of
-     the iterations and at most 50 (not with a limit of 50 or fewer), they are let go; gproj_result.spoiled counts the
-     damage.
+   - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, edges when
+     they become shorter than 0.2 of their length, and planar faces when they bend by more than 95 degrees at an edge,
+     in place of the guard: faces stay convex, upright and apart where they were. The rows come as they are needed, as
+     the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
+     limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
+     gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
      most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
      (gproj_solve_begin).
@@ -6378,16 +6379,13 @@ GPROJI_INTERNAL gproji_panel gproji_front_panel(const gproj_cholesky *c, const g
                              c->inverse + front->first, c->values + front->update);
 }
 
-/* Is the factor too large for the cache? */
-GPROJI_INLINE bool gproji_is_far(const gproj_cholesky *c) { return c->symbolic.values_size > GPROJI_NEAR; }
-
 /* Prefetches a front's panel and right-hand sides: small fronts would wait for their first entries. */
 GPROJI_INLINED void gproji_prefetch_front(const gproj_cholesky *c, int32_t f, int32_t sides) {
     const gproji_front *front = &c->symbolic.front[f];
     const int32_t *permutation = c->permutation + front->first;
     const double *b = c->sweep.given;
     int32_t side, k;
-    if (!gproji_is_far(c)) return;
+    if (c->symbolic.values_size <= GPROJI_NEAR) return;
     gproji_prefetch_values(c->values + front->panel,
                            front->entries < GPROJI_PREFETCHED ? front->entries : (int64_t)GPROJI_PREFETCHED);
     for (side = 0; side < sides; ++side, b += c->symbolic.columns)
@@ -6558,7 +6556,7 @@ GPROJI_INTERNAL void gproji_backward_task(void *data, int32_t index) {
             else
                 for (r = 0; r < front->row_nodes; ++r)
                     for (i = sy->column[node[r]]; i < sy->column[node[r] + 1]; ++i) *to++ = x[i];
-            gproji_panel_backward(&panel, gproji_is_far(c), z);
+            gproji_panel_backward(&panel, c->symbolic.values_size > GPROJI_NEAR, z);
             memcpy(x + front->first, pivots, (size_t)front->width * sizeof(double));
             for (r = 0; r < front->width; ++r) found[permutation[r]] = pivots[r];
         }
@@ -10419,7 +10417,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
 
    A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound.
    Safeguards give way in stages (gproji_yielding): where they leave the last bit of a residual to fall slowly they ask
-   for less; where no step is found with them, for the least if the owner knows one; and then they are let go:
+   for less; where no step is found with them, for the least; and then they are let go:
    constraints come first, and the verdict tells the damage. */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
@@ -10474,7 +10472,6 @@ typedef struct gproji_hooks {
     bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
     bool (*wake)(void *user); /* gives those rows, at the x before; are there new ones? */
     bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
-    bool least; /* safeguards have a least to ask for before they are let go */
     void *user;
 } gproji_hooks;
 
@@ -11340,7 +11337,7 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
    go: constraints come first. False: there is none. */
 GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    bool last = s->yield == GPROJI_YIELD_LAST || !loop->hooks.least, some = false;
+    bool last = s->yield == GPROJI_YIELD_LAST, some = false;
     int32_t i;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
@@ -12266,9 +12263,9 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do
-   if they touch their limit, and so do the corners that a smooth solve before has woken. Weights and active
-   rows stay set. Returns the residual. */
+/* Linearises at x (NULL: the own one), with what must hold at the weight 1. Wishes do not act, nor do the guard and
+   safeguards: these ask for what a corner has, which would hold it where it is. Bounds act if they touch their limit.
+   Weights and active rows stay set. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -12278,7 +12275,8 @@ GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     loop.system = s;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && gproji_weight_in(&loop, g, 1) > 0;
+        g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD &&
+                    gproji_weight_in(&loop, g, 1) > 0;
     }
     s->solving = true;
     gproji_linearise(&loop);
@@ -22173,14 +22171,17 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    still be lost while its neighbours grow, as beside a fixed corner of a gliding boundary, so edges keep a part of
    their length
        |b - a|^2 >= part^2 |b0 - a0|^2                                                                               (2)
-   Corners and edges without a size at the beginning are let go.
+   All faces can be whole and yet lie on each other, so planar faces with the normals m and n at an edge keep
+       m'n >= c                                                                                                      (3)
+   by two rows, each with one of the normals as it is: a row with both would join the elements of >>schur.
+   Corners, edges and bends are let go if they have no size at the beginning, or 90 degrees and more.
 
-   A row asks for the size that its corner or edge has when it is linearised, up to the part above, and for no less than
-   a floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
-   creep all the same, every row asks for its floor only; far from the end that would be too early, for shapes lose more
-   there than they must. If equilibrium without planar faces finds no step even so, the rows ask for the least, faces
-   that are not turned over nor so concave that their sides cross, before they are let go. With planar faces they are
-   let go at once: of 36 twisted patches 24 end whole so, and 20 with that stage (test_smooth).
+   A row asks for the size that its corner, edge or bend has when it is linearised, up to the part above, and for no
+   less than a floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the
+   constraints creep all the same, every row asks for its floor only; far from the end that would be too early, for
+   shapes lose more there than they must. If no step is found even so, the rows ask for the least, faces that are not
+   turned over nor so concave that their sides cross, before they are let go. Of 144 twisted patches 124 end whole so,
+   105 without that stage, and 81 without bends as well; of the 36 in test_smooth 35, 32 and 24.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22196,13 +22197,16 @@ static const double gproji_corner_kept = 0.25; /* a step that leaves less of a s
 static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
 static const double gproji_edge_floor = 0.15;  /* asked of shorter edges */
 static const double gproji_edge_kept = 0.5;    /* a step that leaves less of a short edge is refused */
+static const double gproji_bend_least = -0.1;  /* cosine of a bend below which it gets a row, */
+static const double gproji_bend_wanted = 0, gproji_bend_floor = -0.3; /* that this asks for, and asks of sharper ones */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
     GPROJI_CORNER_TERMS = 18
 };
 
-/* Item 2 h + k is the corner behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1); the
-   items behind all corners are the edges. */
+/* Item 2 h + k is the corner behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1); behind
+   all corners come the edges, and then the bends behind half-edges, with the normal of the face of each as variables.
+   */
 typedef struct gproji_corners {
     double *size;    /* per half-edge: the corner's area when the solve began; 0: it is let go */
     double *length;  /* per edge, likewise */
@@ -22211,6 +22215,7 @@ typedef struct gproji_corners {
     uint8_t *marked; /* items that are to act */
     int32_t *item;   /* per row; has room for all items */
     int32_t edges;   /* the item of edge 0 */
+    int32_t bends;   /* the item of the bend at half-edge 0 */
     int32_t items;
     int32_t rounds; /* in this solve: how often items were marked */
 } gproji_corners;
@@ -22238,8 +22243,19 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
+/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was sharp when the
+   solve began: then it is let go. */
+GPROJI_INTERNAL double gproji_bend(const gproji_part *part, const double *x, int32_t edge) {
+    const gproj_form *form = part->form;
+    const int32_t *face = form->mesh->face + 2 * (size_t)edge;
+    const double *axis = gproji_corners_of(part)->axis;
+    if (face[0] < 0 || face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1;
+    if (!(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]) > 0)) return 1;
+    return gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]);
+}
+
 /* Gives the terms of an item their coefficients, in the order of gproji_add_corner. Returns which part of the area, or
-   of the squared length, the row asks for. */
+   of the squared length, or which cosine the row asks for. */
 GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t item,
                                                gproj_term *term) {
     const gproji_corners *guard = gproji_corners_of(part);
@@ -22248,6 +22264,12 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     bool upright = item % 2 != 0;
     gproji_yielding yield = gproji_yield_of(part->form->system);
     double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
+    if (item >= guard->bends) {
+        const double *beside = x + part->form->normal[mesh->face[(item - guard->bends) ^ 1]];
+        for (k = 0; k < 3; ++k) term[k].a = beside[k];
+        has = yield == GPROJI_YIELD_SLOWLY ? gproji_bend(part, x, (item - guard->bends) / 2) : gproji_bend_floor;
+        return gproji_fmax(gproji_fmin(has, gproji_bend_wanted), gproji_bend_floor);
+    }
     if (edge >= 0) {
         double length = guard->length[edge], asked = gproji_edge_floor;
         for (k = 0; k < 3; ++k) {
@@ -22288,14 +22310,19 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     }
 }
 
-/* Adds the row of an item, without a weight yet. Returns the number, -1 after an error. */
+/* Adds the row of an item, without a weight yet. Returns the number; -1 after an error, or if there is no such corner
+   or bend. */
 GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
-    int32_t edge = item - guard->edges, h = edge < 0 ? item / 2 : mesh->face[2 * edge] < 0 ? 2 * edge + 1 : 2 * edge;
-    int32_t vertex[3] = {mesh->origin[h], mesh->origin[mesh->next[h]], mesh->origin[mesh->next[mesh->next[h]]]};
-    int32_t count = 0, c, k, row;
+    bool bends = item >= guard->bends;
+    int32_t edge = item - guard->edges, h = bends ? item - guard->bends : edge < 0 ? item / 2 : 2 * edge, vertex[3];
+    int32_t face = mesh->face[h], beside = mesh->face[h ^ 1], count = 0, c, k, row;
+    const int32_t *normal = part->form->normal;
+    if (edge < 0 ? face < 0 : bends && (face < 0 || beside < 0 || normal[face] < 0 || normal[beside] < 0)) return -1;
+    vertex[0] = mesh->origin[h], vertex[1] = mesh->origin[mesh->next[h]];
+    vertex[2] = mesh->origin[mesh->next[mesh->next[h]]];
     /* A corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
        a_y b_z, - a_z b_y (m_x), ...; coefficients by gproji_linearise_corner. */
     for (c = 0; edge < 0 && c < 3; ++c)
@@ -22304,8 +22331,9 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
             gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
             gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
         }
-    if (edge >= 0) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
-    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, mesh->face[h]);
+    for (k = 0; bends && k < 3; ++k) gproji_set_term(&term[count++], normal[face] + k, -1, 0);
+    if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
+    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, face < 0 ? beside : face);
     if (row < 0) return -1;
     guard->item[row] = item;
     guard->row[item] = row;
@@ -22318,15 +22346,15 @@ GPROJI_INTERNAL bool gproji_corner_acts_now(const gproji_part *part, int32_t ite
     return row >= 0 && gproji_group_at(part->form->system, part->group)->row[row].weight > 0;
 }
 
-/* Marks the corners and edges that do not act and are within `margin` of their bounds at x, for gproji_wake_corners;
-   at the first one it stops if that is enough. Returns whether there was one. */
+/* Marks the corners, edges and bends that do not act and are within `margin` of their bounds at x, for
+   gproji_wake_corners; at the first one it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
                                          bool first) {
     const gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
-    int32_t f, h, c, k, e;
-    bool found = false;
+    int32_t f, h, c, k;
+    bool found = false, planar = gproji_is_on(part->form, part->form->planarity);
     for (f = 0; f < mesh->face_count; ++f) {
         double m[2][3], area[3];
         gproji_corner_normal(part->form, x, before, f, m[0]);
@@ -22343,12 +22371,13 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
             }
         }
     }
-    for (e = 0; e < mesh->edge_count; ++e) {
-        if (gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * guard->length[e] ||
-            gproji_corner_acts_now(part, guard->edges + e))
-            continue;
+    for (k = 0; k < mesh->edge_count + mesh->halfedge_count; ++k) { /* edges, then bends */
+        bool holds = k < mesh->edge_count
+                         ? gproji_edge_length(mesh, x, k) >= (gproji_corner_least + margin) * guard->length[k]
+                         : !planar || gproji_bend(part, x, (k - mesh->edge_count) / 2) >= gproji_bend_least + margin;
+        if (holds || gproji_corner_acts_now(part, guard->edges + k)) continue;
         if (first) return true;
-        guard->marked[guard->edges + e] = 1;
+        guard->marked[guard->edges + k] = 1;
         found = true;
     }
     return found;
@@ -22376,15 +22405,15 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     gproj_system *system = form->system;
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     gproji_corners *guard = gproji_corners_of(part);
-    int32_t item, row;
+    int32_t item, row, edge;
     bool woken = false;
     for (item = 0; item < guard->items; ++item) {
         if (!guard->marked[item]) continue;
         guard->marked[item] = 0;
         row = guard->row[item] < 0 ? gproji_add_corner(part, item) : guard->row[item];
         if (row < 0 || gproji_corner_acts_now(part, item)) continue;
-        gproji_place_row(system, part->group, row,
-                         item < guard->edges ? sqrt(guard->size[item / 2]) : guard->length[item - guard->edges], 0);
+        edge = item < guard->bends ? item - guard->edges : (item - guard->bends) / 2;
+        gproji_place_row(system, part->group, row, edge < 0 ? sqrt(guard->size[item / 2]) : guard->length[edge], 0);
         woken = true;
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
@@ -22455,7 +22484,8 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     if (!guard) return;
     part->data = guard;
     guard->edges = 2 * mesh->halfedge_count;
-    guard->items = guard->edges + mesh->edge_count;
+    guard->bends = guard->edges + mesh->edge_count;
+    guard->items = guard->bends + mesh->halfedge_count;
     guard->size = (double *)gproji_part_take(part, mesh->halfedge_count, sizeof *guard->size);
     guard->length = (double *)gproji_part_take(part, mesh->edge_count, sizeof *guard->length);
     guard->axis = (double *)gproji_part_take(part, 3 * (int64_t)mesh->face_count, sizeof *guard->axis);
@@ -23349,7 +23379,6 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
-    hooks->least = !gproji_is_on(form, form->planarity);
     /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold
        with whole faces where it does not with straight steps. */
     if (smooth && (loop->earlier > 0 || gproji_is_on(form, form->planarity))) hooks->settle = gproji_settle_form;
@@ -23624,10 +23653,8 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         int32_t item = in ? 0 : corners->item[k];
         item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
         if (!in || stream->wrong) continue;
-        if (item < corners->edges && form->mesh->face[item / 2] < 0)
+        if (corners->row[item] < 0 && gproji_add_corner(part, item) < 0)
             gproji_spoil(stream, "a corner is not one of a face");
-        else if (corners->row[item] < 0)
-            gproji_add_corner(part, item);
     }
 }
 

@@ -147,9 +147,9 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
     gproj_add_gliding_boundary(form, 1);
 }
 
-/* Small patches with a fixed or gliding boundary, some of which have hardly another way than to lose an edge: most stay
-   whole, because edges are kept as well as corners (with corners alone at least two fewer than asked here do), and some of
-   them in a later attempt. */
+/* Small patches with a fixed or gliding boundary, some of which have hardly another way than to lose an edge or to fold:
+   nearly all of 36 stay whole, because edges and bends are kept as well as corners (24 without bends), and give way in two
+   stages (32 in one), some of them in a later attempt. */
 GPROJT_TEST(patches_stay_whole) {
     static void (*const build[3])(gproj_form *form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
                                                                    gprojt_add_planar_gliding};
@@ -163,24 +163,21 @@ GPROJT_TEST(patches_stay_whole) {
             ++whole;
             helped += result.attempts > 1;
         }
-    if (whole < 23 || helped < 5) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
-    GPROJT_CHECK(whole >= 23 && helped >= 5);
+    if (whole < 33 || helped < 3) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
+    GPROJT_CHECK(whole >= 33 && helped >= 3);
 }
 
-/* Where the constraints creep because many corners must shrink, these ask for less: more patches with a fixed boundary
-   are whole before the safeguards are let go after 50 iterations (4 of 24 are where corners go on asking). */
+/* Where the constraints creep because many corners must shrink, these ask for less: 24 patches with a fixed boundary take
+   some 1,700 iterations together, and 1,900 to 2,200 where corners go on asking. */
 GPROJT_TEST(creeping_corners_ask_for_less) {
-    int32_t size, i;
-    int early = 0;
+    int32_t size, i, iterations = 0;
     for (size = 5; size <= 6; ++size)
         for (i = 1; i <= 12; ++i) {
             double planarity;
-            gproj_result result = gprojt_solve_twisted(size, 0.05 * i, gprojt_add_planar_fixed, &planarity);
-            early += result.outcome == GPROJ_CONVERGED && result.attempts == 1 && result.spoiled.total == 0 &&
-                     result.iterations < 50;
+            iterations += gprojt_solve_twisted(size, 0.05 * i, gprojt_add_planar_fixed, &planarity).iterations;
         }
-    if (early < 7) printf("  only %d\n", early);
-    GPROJT_CHECK(early >= 7);
+    if (iterations > 1825) printf("  %d iterations\n", (int)iterations);
+    GPROJT_CHECK(iterations <= 1825);
 }
 
 typedef struct gprojt_attempts {
