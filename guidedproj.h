@@ -12263,9 +12263,9 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), with what must hold at the weight 1. Wishes do not act, nor do the guard and
-   safeguards: these ask for what a corner has, which would hold it where it is. Bounds act if they touch their limit.
-   Weights and active rows stay set. Returns the residual. */
+/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do
+   if they touch their limit, and so do the corners that a smooth solve before has woken. Weights and active
+   rows stay set. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
@@ -12275,8 +12275,7 @@ GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     loop.system = s;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
-        g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD &&
-                    gproji_weight_in(&loop, g, 1) > 0;
+        g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && gproji_weight_in(&loop, g, 1) > 0;
     }
     s->solving = true;
     gproji_linearise(&loop);
@@ -23826,13 +23825,14 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    */
 
 static const double gproji_drag_epsilon = 3e-4; /* see (1) */
+static const double gproji_drag_damping = 10;   /* epsilon's factor where a step is damped */
 static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
 static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, relative to a free one, does not move */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
-    GPROJI_DRAG_HALVINGS = 10,   /* of a step that is to take the residual off */
+    GPROJI_DRAG_DAMPINGS = 3,    /* of a step that takes the residual off */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
     GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
     GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
@@ -23941,7 +23941,7 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     const gproji_handle_list *list = &drag->handle;
     const double *x = gproj_system_values(system);
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, rank;
-    int32_t light_from = 3 * drag->form->mesh->vertex_count, halving, i, j;
+    int32_t light_from = 3 * drag->form->mesh->vertex_count, damping, i, j;
     double residual = gproji_see_hard(system, NULL), *column;
     gproji_tangent how;
     int64_t e;
@@ -23961,15 +23961,18 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
                            "drag: what must hold cannot be linearised here: its numbers are too large or too "
                            "different");
     }
-    /* 2. The step from x to `base` is halved until no vertex moves by more than a mean edge and the residual is below
-       that at x: where rows nearly depend on each other the least step that satisfies them may be hundreds of edges
-       long. */
-    for (halving = 0; restore && halving <= GPROJI_DRAG_HALVINGS; ++halving) {
-        double most = 0;
+    /* 2. The step from x to `base` is damped until it halves the residual and moves no vertex by more than a mean edge:
+       where rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. The last
+       one need not halve it; after that there is none. */
+    for (damping = 0; restore; ++damping) {
+        double enough = damping < GPROJI_DRAG_DAMPINGS ? residual / 2 : residual, most = 0;
         for (i = 0; i < light_from; i += 3) most = gproji_fmax(most, gproji_distance3(drag->base + i, x + i));
-        if (gproji_see_hard(system, drag->base) < residual && most <= 1) break;
-        for (i = 0; i < drag->variables; ++i)
-            drag->base[i] = halving < GPROJI_DRAG_HALVINGS ? (drag->base[i] + x[i]) / 2 : x[i];
+        if (gproji_see_hard(system, drag->base) < enough && most <= 1) break;
+        memcpy(drag->base, x, n * sizeof *drag->base);
+        if (damping == GPROJI_DRAG_DAMPINGS) break;
+        gproji_see_hard(system, NULL);
+        how.epsilon *= gproji_drag_damping;
+        if (!gproji_project(system, &how, 0, NULL, drag->base)) break;
     }
     gproji_orthonormalise(drag);
     /* 3. pull = (L'L)^-1 L', the pseudo-inverse of L. */

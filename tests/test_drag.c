@@ -455,10 +455,10 @@ static gproj_mesh *gprojt_tower(int32_t rows, int32_t around) {
     return gprojt_mesh_of(s);
 }
 
-/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other. */
-GPROJT_TEST(restorations_stay_near) {
+/* Drags the middle of a tower that a smooth solve has fitted from places changed by 1e-9. Returns the largest residual. */
+static double gprojt_bend_tower(uint64_t seed) {
     gproj_mesh *mesh = gprojt_tower(16, 24);
-    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_form *form;
     gproj_solve_options solve;
     gproj_drag_options options;
     gproj_handles handles;
@@ -468,9 +468,11 @@ GPROJT_TEST(restorations_stay_near) {
     int64_t ends[2] = {0, 0};
     memset(&options, 0, sizeof options);
     memset(&handles, 0, sizeof handles);
+    memset(&solve, 0, sizeof solve);
+    gprojt_shake(mesh, 1e-9, seed);
+    form = gproj_form_create(mesh, NULL);
     options.residual_bound = 0.02;
     handles.count = 1, handles.start = ends, handles.vertex = list, handles.weight = weight;
-    memset(&solve, 0, sizeof solve);
     solve.smooth = true;
     gproj_add_planarity(form, 1);
     gproj_add_fixed_boundary(form, 1);
@@ -481,7 +483,7 @@ GPROJT_TEST(restorations_stay_near) {
     handles.position = start + 3 * middle;
     ends[1] = gproj_find_reach(form, middle, 5 * edge, list, weight);
     drag = gproj_drag_begin(form, &handles, &options, NULL);
-    GPROJT_REQUIRE(drag);
+    if (!drag) abort();
     for (k = 1; k <= 10; ++k) {
         memcpy(p, start + 3 * middle, sizeof p);
         p[0] += 0.25 * k * edge;
@@ -490,11 +492,23 @@ GPROJT_TEST(restorations_stay_near) {
         for (v = 0; v < mesh->vertex_count; ++v)
             GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, start + 3 * v) < 5 * edge);
     }
-    GPROJT_CHECK(residual < 0.2);
     gproj_drag_cancel(drag);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(list), free(weight), free(start);
+    return residual;
+}
+
+/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other. */
+GPROJT_TEST(restorations_stay_near) {
+    uint64_t seed;
+    int small = 0;
+    for (seed = 1; seed <= 8; ++seed) {
+        double residual = gprojt_bend_tower(seed);
+        GPROJT_CHECK(residual < 0.2);
+        small += residual < 0.03;
+    }
+    GPROJT_CHECK(small >= 6);
 }
 
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
