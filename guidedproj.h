@@ -11442,6 +11442,8 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     return sum <= 0.01 * size;
 }
 
+static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
+
 /* Writes the obstacle of constraints that do not hold, and advice. */
 GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
     gproj_system *s = loop->system;
@@ -11479,7 +11481,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
                       s->group[wish].name);
     else if (!stalled && !balanced)
-        gproji_format(more, size, "; allow more iterations, or ask for less");
+        gproji_format(more, size, "%s", gproji_more_iterations);
     else if (second >= 0)
         gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
     else
@@ -18764,6 +18766,7 @@ typedef struct gproji_unknowns {
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
+    bool futile;   /* and something that it was asked for can never hold */
     gproji_loop loop;
     gproji_structure structure; /* of the system at the beginning */
 } gproji_solve;
@@ -22840,8 +22843,8 @@ GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, co
 }
 
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
-   would not explain it. */
-GPROJI_INTERNAL void gproji_tell_held(const gproj_form *form, gproj_result *result) {
+   would not explain it. Returns whether there is such a face. */
+GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
@@ -22864,6 +22867,7 @@ GPROJI_INTERNAL void gproji_tell_held(const gproj_form *form, gproj_result *resu
                       "; all vertices are fixed: let some of them go");
     else if (gproji_is_on(form, form->planarity))
         gproji_tell_planes(form, held, value, result);
+    return bent > 0;
 }
 
 /* A vertex of a part of the mesh that has loads and no support; -1: none. */
@@ -23375,6 +23379,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_hooks *hooks = &loop->hooks;
     bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended;
     /* 1. What the form adds to the system's steps. */
+    form->solve.futile = false;
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
@@ -23398,7 +23403,11 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
-        gproji_tell_held(form, result);
+        char *advice = strstr(result->message, gproji_more_iterations);
+        size_t length = strlen(result->message), cut = sizeof gproji_more_iterations - 1;
+        form->solve.futile = gproji_tell_held(form, result);
+        /* More iterations would not help against what is held. */
+        if (advice && result->message[length]) memmove(advice, advice + cut, strlen(advice + cut) + 1);
         if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
@@ -23471,7 +23480,8 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     }
     memcpy(start, x, count * sizeof *start);
     result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
-    for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result); ++attempt) {
+    for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result) && !form->solve.futile;
+         ++attempt) {
         gproj_result other;
         /* 1. Is there enough left for another one? */
         if (iterations - used < GPROJI_ATTEMPT_LEAST) break;

@@ -1234,10 +1234,12 @@ GPROJT_TEST(held_corners_are_counted) {
     double row[6][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 5, 3}, {-1, 3, 2}};
     static const double bends[3] = {0.1, 1e-9, 0};
     static const int32_t fixed[4] = {0, 1, 2, 4}, chain[4] = {0, 1, 2, 3};
+    gproj_solve_options smooth;
     gproj_result result;
     gproj_mesh *mesh;
     gproj_form *form;
     int k;
+    memset(&smooth, 0, sizeof smooth);
     for (k = 0; k < 6; ++k) {
         double bend = bends[k % 3];
         form = gprojt_one_face(k < 3 ? 5 : 4, place, bend, &mesh);
@@ -1253,6 +1255,17 @@ GPROJT_TEST(held_corners_are_counted) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+    /* No number of iterations or attempts would do. */
+    form = gprojt_one_face(5, place, bends[0], &mesh);
+    gproj_add_fixed(form, 4, fixed, 1);
+    result = gproj_solve(form, 1, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && strstr(result.message, "cannot become flat"));
+    GPROJT_CHECK(!strstr(result.message, "iterations, or"));
+    smooth.smooth = true;
+    result = gproj_solve(form, 200, &smooth);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && result.attempts == 1);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
     for (k = 0; k < 4; ++k) row[k][0] = sqrt(k) / 7, row[k][1] = sqrt(k) / 3, row[k][2] = sqrt(k) / 1.1;
     form = gprojt_one_face(6, (const double(*)[3])row, 0, &mesh);
     gproj_add_fixed(form, 4, chain, 1);
