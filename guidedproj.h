@@ -7640,8 +7640,8 @@ typedef struct gproji_tally {
 static const double gproji_weight_most = 1e50; /* a constant, not a literal, which x87 keeps with more digits */
 static const double gproji_guard_slack = 0.2;  /* how far a step may leave a guard's row below 0 */
 
-/* What a group's rows are to steps. Those from GPROJI_GUARD on are not in merit, residual and verdict. When bounds
-   begin and cease to act: gproji_switch_bounds. */
+/* What a group's rows are to steps; >>loop has a table of who adds them and when they act. Those from GPROJI_GUARD on
+   are not in merit, residual and verdict. When bounds begin and cease to act: gproji_switch_bounds. */
 typedef enum gproji_role {
     GPROJI_ORDINARY,
     GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
@@ -10415,10 +10415,20 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need
    25 iterations without it need 9 (test_smooth).
 
-   A safeguard (GPROJI_SAFEGUARD) gets rows once a step has violated it (hooks.inspect, hooks.wake). It acts as a bound.
    Safeguards give way in stages (gproji_yielding): where they leave the last bit of a residual to fall slowly they ask
-   for less; where no step is found with them, for the least; and then they are let go:
-   constraints come first, and the verdict tells the damage. */
+   for less; where no step is found with them, for the least; and then they are let go: constraints come first, and the
+   verdict tells the damage.
+
+   The roles of groups, by who adds rows, when these act, and whether merit, residual and verdict count them:
+       ordinary    caller and form, before the solve   always, bounds while they are violated               counted
+       lazy        the same (signs of forces)          likewise, but a good step is not found again         counted
+       dense       the same (volume, total area)       always; in U of A + U U', not in the matrix A        counted
+       guard       form, before the solve              while wishes guide and somewhat longer, as bounds    no
+       safeguard   form, when a step has violated it   as bounds, until they are let go                     no
+                   (hooks.inspect, hooks.wake)
+       metric      form, in smooth solves              with k, until it rests near a solution               no
+       brake       form, in smooth solves of forces    with k (k - 1) for k > 1, after steps have failed    no
+   Drags take all but wishes, guard and metrics (gproji_see_hard). */
 
 static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
