@@ -40,7 +40,7 @@ i686-gnu17 | i686-linux-gnu-gcc      | -std=gnu17 -O2 -static -mfpmath=387 | @  
 haswell    | gcc                     | -std=gnu17 -O2 -march=haswell       | @                     | $usual
 O0         | gcc                     | -std=c11 -O0                        | @                     | $few
 O1         | gcc                     | -std=c11 -O1                        | @                     | $few
-O3         | gcc                     | -std=c11 -O3                        | @                     | $few
+O3         | gcc                     | -std=c11 -O3                        | @                     | $few limits
 Os         | gcc                     | -std=c11 -Os                        | @                     | $few
 lto        | gcc                     | -std=c11 -O2 -flto=auto             | @                     | state system
 clang-O3   | clang                   | -std=c11 -O3                        | @                     | $few
