@@ -23,7 +23,7 @@ for compiler in gcc clang g++; do
     nm -D --defined-only "$work/library.so" | awk '$2 == "T" { print $3 }' | exported "$compiler -fvisibility=hidden"
 done
 if have gcc; then
-    gcc -w -O0 -shared -fPIC -fvisibility=hidden "$visible" -DGPROJ_STATIC -I"$root" "$work/whole.c" -o "$work/library.so" -lm
+    gcc -w -O1 -shared -fPIC -fvisibility=hidden "$visible" -DGPROJ_STATIC -I"$root" "$work/whole.c" -o "$work/library.so" -lm
     clean 'exports in static mode' "$(nm -D --defined-only "$work/library.so" | grep gproj)"
 fi
 for compiler in x86_64-w64-mingw32-gcc x86_64-w64-mingw32-g++; do
@@ -144,7 +144,8 @@ clean 'restrict, which C++ does not have' "$(sed 's|/\*.*\*/||' "$header" | grep
 
 if have gcc; then
     sed -n '/^     #define GUIDEDPROJ_IMPLEMENTATION/,/^     }/p' "$header" | sed 's/^     //' >"$work/first.c"
-    gcc -w -O0 -I"$root" "$work/first.c" -o "$work/first" -lm && (cd "$work" && ./first >first.txt 2>&1)
+    library=$(existing build/library.a)
+    gcc -w -O0 -I"$root" ${library:+-DGPROJI_IMPLEMENTED} "$work/first.c" $library -o "$work/first" -lm && (cd "$work" && ./first >first.txt 2>&1)
     [ $? -eq 1 ] && grep -q "'roof.obj' cannot be opened" "$work/first.txt" && pass || fail "the first program does not say why it cannot load: $(head -n 2 "$work/first.txt")"
 fi
 run_jobs

@@ -25,13 +25,14 @@ mkdir -p "$work/source/tools" "$work/bin"
 cp "$root/guidedproj.h" "$root/LICENSE" "$work/source"
 cp -R "$root/tools/package" "$work/source/tools"
 
-# The library takes long to compile: once with the same options.
+# The library takes long to compile: once with the same options, and without optimising it, which changes nothing here; that
+# packages ask for it is looked at below.
 cat >"$work/bin/once" <<'END'
 #!/bin/bash
 object=${*: -1} kept=$0.$(printf '%s ' "$@" | sed 's/[^ ]*\/[^ ]*//g' | cksum | tr -d ' ')
 for ((i = 1; i < $#; ++i)); do [ "${!i}" != -o ] || { i=$((i + 1)); object=${!i}; }; done
 [[ " $* " = *" -c "* && " $* " = *guidedproj.c* ]] || exec "$@"
-[ -f "$kept" ] || "$@" || exit
+[ -f "$kept" ] || "$@" -O0 || exit
 [ -f "$kept" ] && cp "$kept" "$object" || cp "$object" "$kept"
 END
 chmod +x "$work/bin/once"

@@ -70,7 +70,7 @@ for prefix in "$work"/prefix_*.c; do
     tag=${prefix##*/prefix_} tag=${tag%.c}
     for switch in '' -DGPROJ_NO_SIMD; do
         job "what comes before >>$tag does not compile${switch:+ with $switch}" \
-            "gcc -std=c99 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -Wno-unused -DGUIDEDPROJ_IMPLEMENTATION $switch '$prefix'"
+            "gcc -std=c99 -fsyntax-only -Wall -Wextra -Wpedantic -Werror -Wno-unused -Wno-misleading-indentation -DGUIDEDPROJ_IMPLEMENTATION $switch '$prefix'"
     done
 done
 run_jobs

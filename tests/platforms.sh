@@ -1,8 +1,9 @@
 #!/bin/bash
 # platforms.sh - the tests as other machines and compilers see them: processors by qemu, Windows by wine, x87, contracted
-# arithmetic, levels of optimisation; and states that one machine saves and another goes on with.
+# arithmetic, levels of optimisation; and states that one machine saves and another goes on with. Before them the header is
+# compiled, without a warning, for targets and with options for which check_compile.sh has no time: platform_compile.sh.
 #
-#     make -C tests platforms        all; NAMES='s390x windows': only these
+#     make -C tests platforms        all; NAMES='compile s390x windows': only these
 #
 # Each platform has a line in the table below: it builds the library and some test programs, and runs them. At the end
 # stand the sums of each platform and, alone on a line, of all. What this machine lacks is skipped with a sentence.
@@ -22,6 +23,9 @@ x87='default_guidance guard_is_no_wish a_stray_vertex terms_in_common generated_
 out=$PWD/build/platforms
 rm -rf "$out" && mkdir -p "$out"
 
+if [ -z "${NAMES:-}" ] || grep -qw compile <<<"$NAMES"; then . ./platform_compile.sh; fi
+compiled="$passed passed, $failed failed, $skipped skipped"
+
 usual='mesh text number state cholesky system form' few='mesh number state system drag'
 # NAME | COMPILER | OPTIONS | RUNNER, @ stands for the program | PROGRAMS
 platforms="
@@ -36,7 +40,7 @@ i686-gnu17 | i686-linux-gnu-gcc      | -std=gnu17 -O2 -static -mfpmath=387 | @  
 haswell    | gcc                     | -std=gnu17 -O2 -march=haswell       | @                     | $usual
 O0         | gcc                     | -std=c11 -O0                        | @                     | $few
 O1         | gcc                     | -std=c11 -O1                        | @                     | $few
-O3         | gcc                     | -std=c11 -O3                        | @                     | $few
+O3         | gcc                     | -std=c11 -O3                        | @                     | $few limits
 Os         | gcc                     | -std=c11 -Os                        | @                     | $few
 lto        | gcc                     | -std=c11 -O2 -flto=auto             | @                     | state system
 clang-O3   | clang                   | -std=c11 -O3                        | @                     | $few
@@ -136,6 +140,7 @@ logs=build/platforms/log bash run.sh -j "${JOBS:-2}" "${tests[@]}" | sed '$d' # 
 [ -z "$wineserver" ] || "$wineserver" -k 2>/dev/null
 
 echo
+printf 'platform %-11s %s\n' compile "$compiled"
 for name in "${names[@]}"; do
     p=0 f=0 s=0
     for sum in "$out/log/platforms_${name}_"*.sum; do
