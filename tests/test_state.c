@@ -551,6 +551,7 @@ static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t
 GPROJT_TEST(numbers_out_of_range) {
     static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
     static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
+    static const double of_row = 0.8661761457;
     static const int32_t last = 123456789, iterations = 7654321, one = 1;
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -564,10 +565,12 @@ GPROJT_TEST(numbers_out_of_range) {
     memset(&options, 0, sizeof options);
     gproj_set_schedule(form, closeness, gprojt_schedule(weight, decay, last));
     gproj_set_element_weights(form, 0, 1, &face, &factor);
+    gproj_system_set_row_weight(gproj_form_system(form), closeness, 3, of_row);
     mesh->position[5] = height;
     state = gprojt_save(form, &size);
     gprojt_check_range(form, state, size, weight, 0, 1e50);
     gprojt_check_range(form, state, size, decay, 0, 1);
+    gprojt_check_range(form, state, size, of_row, 0, 1e100); /* a product of two weights */
     gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
     gprojt_check_integers(form, state, size, last, GPROJ_LAST_GUIDING);
     free(state);
