@@ -131,6 +131,33 @@ GPROJT_TEST(corners_are_let_go) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Triangles among the quads, which have no normals to keep from bending: the solve takes the same way wherever the first
+   vertex lies, here after half a turn about the vertical. */
+GPROJT_TEST(triangles_are_not_bent) {
+    gproj_solve_options options = gprojt_smooth();
+    gproj_mesh *mesh[2];
+    gproj_result result[2];
+    int32_t i, v, k;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *quads = gprojt_twisted(8, 0.1);
+        gproj_form *form;
+        double sign = i ? -1 : 1;
+        mesh[i] = gprojt_mesh_of(gprojt_hybrid_grid(8, 8));
+        for (v = 0; v < quads->vertex_count; ++v)
+            for (k = 0; k < 3; ++k) mesh[i]->position[3 * v + k] = (k < 2 ? sign : 1) * quads->position[3 * v + k];
+        gproj_mesh_destroy(quads);
+        form = gproj_form_create(mesh[i], NULL);
+        gprojt_add_planar(form, NULL);
+        result[i] = gproj_solve(form, 100, &options);
+        GPROJT_CHECK(gprojt_is_sound(&result[i]) && gproj_measure_planarity(mesh[i], NULL, NULL) <= 1e-12);
+        gproj_form_destroy(form);
+    }
+    GPROJT_CHECK(result[0].iterations == result[1].iterations);
+    for (v = 0; v < 3 * mesh[0]->vertex_count; ++v)
+        GPROJT_NEAR(mesh[0]->position[v], (v % 3 < 2 ? -1 : 1) * mesh[1]->position[v], 1e-9);
+    gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
 /* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
 GPROJT_TEST(steps_are_bent) {
     static const int32_t sizes[3] = {6, 11, 16};
@@ -364,6 +391,7 @@ int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
+    GPROJT_RUN(triangles_are_not_bent);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
