@@ -369,7 +369,39 @@ GPROJT_TEST(distortion_and_its_derivatives) {
     GPROJT_CHECK(turned > 20);
 }
 
+/* On which side of the line a b is c? Is c on the segment? */
+static int32_t side_of(const double *xy, int32_t a, int32_t b, int32_t c) {
+    double turn = (xy[2 * b] - xy[2 * a]) * (xy[2 * c + 1] - xy[2 * a + 1]) -
+                  (xy[2 * b + 1] - xy[2 * a + 1]) * (xy[2 * c] - xy[2 * a]);
+    return (turn > 0) - (turn < 0);
+}
+static bool is_on(const double *xy, int32_t a, int32_t b, int32_t c) {
+    return side_of(xy, a, b, c) == 0 && (xy[2 * c] - xy[2 * a]) * (xy[2 * c] - xy[2 * b]) <= 0 &&
+           (xy[2 * c + 1] - xy[2 * a + 1]) * (xy[2 * c + 1] - xy[2 * b + 1]) <= 0;
+}
+
+/* Segments between the points of a small grid, also without length, meet as they should: at an end of one on the other, or
+   where each has its ends on both sides of the other one. */
+GPROJT_TEST(segments_meet) {
+    enum {
+        N = 4
+    };
+    double xy[2 * N * N];
+    int32_t i, a, b, c, d;
+    for (i = 0; i < N * N; ++i) xy[2 * i] = i % N, xy[2 * i + 1] = i / N;
+    for (a = 0; a < N * N; ++a)
+        for (b = 0; b < N * N; ++b)
+            for (c = 0; c < N * N; ++c)
+                for (d = 0; d < N * N; ++d) {
+                    bool touch = is_on(xy, a, b, c) || is_on(xy, a, b, d) || is_on(xy, c, d, a) || is_on(xy, c, d, b);
+                    bool cross = side_of(xy, a, b, c) * side_of(xy, a, b, d) < 0 &&
+                                 side_of(xy, c, d, a) * side_of(xy, c, d, b) < 0;
+                    GPROJT_CHECK(gproji_segments_meet(xy, a, b, c, d) == (touch || cross));
+                }
+}
+
 int main(void) {
+    GPROJT_RUN(segments_meet);
     GPROJT_RUN(distortion_and_its_derivatives);
     GPROJT_RUN(patterns_solve_their_equations);
     GPROJT_RUN(all_patterns_are_found);

@@ -158,6 +158,43 @@ GPROJT_TEST(triangles_are_not_bent) {
     gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
 }
 
+/* A step is refused that takes three quarters of a corner's area and leaves less than a quarter of what it was when the
+   solve began: a corner of a square goes along the diagonal, by the part s, which leaves the part 1 - 2 s. */
+GPROJT_TEST(steps_that_take_corners_are_refused) {
+    static const double way[7][2] = {{0, 0.36}, {0, 0.39}, {0, 0.6}, {0.36, 0.45}, {0.36, 0.47}, {0.42, 0.45}, {0.42, 0.49}};
+    static const bool refused[7] = {false, true, true, false, true, false, true};
+    gproj_solve_options options = gprojt_smooth();
+    int32_t i, k, end;
+    for (k = 0; k < 4; ++k) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
+        double square[12], target[3], values[2][32], centre[3], scale;
+        gproj_system *system;
+        gproj_form *form;
+        for (i = 0; i < 4; ++i) mesh->position[3 * i + 2] = 0;
+        memcpy(square, mesh->position, sizeof square);
+        form = gproj_form_create(mesh, NULL);
+        system = gproj_form_system(form);
+        gproj_add_planarity(form, 1);
+        for (i = 0; i < 3; ++i) target[i] = square[3 * k + i] + (i == 2);
+        gproj_add_targets(form, 1, &k, target, 1); /* something to do */
+        GPROJT_REQUIRE(gproj_system_variable_count(system) <= 32 && gproj_solve_begin(form, 10, &options, NULL));
+        for (end = 0; end < 2; ++end)
+            memcpy(values[end], gproj_system_values(system),
+                   (size_t)gproj_system_variable_count(system) * sizeof(double));
+        gproj_solve_advance(form, 0);
+        gproj_form_units(form, centre, &scale);
+        for (i = 0; i < 14; ++i) {
+            const double *from = square + 3 * k, *to = square + 3 * (3 - k);
+            int32_t c;
+            for (c = 0; c < 2; ++c)
+                values[i % 2][3 * k + c] = (from[c] + way[i / 2][i % 2] * (to[c] - from[c]) - centre[c]) * scale;
+            if (i % 2) GPROJT_CHECK(gprojt_inside_refuses(form, values[0], values[1]) == refused[i / 2]);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
 GPROJT_TEST(steps_are_bent) {
     static const int32_t sizes[3] = {6, 11, 16};
@@ -392,6 +429,7 @@ int main(void) {
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
     GPROJT_RUN(triangles_are_not_bent);
+    GPROJT_RUN(steps_that_take_corners_are_refused);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);

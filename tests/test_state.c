@@ -590,6 +590,40 @@ GPROJT_TEST(numbers_out_of_range) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Likewise eighths, which have one byte: the one in which two states differ. Which: a group's weight, how it decays, the
+   weight of a row. */
+GPROJT_TEST(eighths_out_of_range) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    int32_t which, k, byte;
+    for (which = 0; which < 3; ++which) {
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+        int32_t closeness = gproj_add_closeness(form, 1);
+        uint8_t *state[2];
+        size_t size[2], i, at = 0, differ = 0;
+        for (k = 0; k < 2; ++k) {
+            double value = 0.5 + 0.125 * k;
+            gproj_set_schedule(form, closeness, gprojt_schedule(which == 0 ? value : 2, which == 1 ? value : 1, 9));
+            gproj_system_set_row_weight(gproj_form_system(form), closeness, 3, which == 2 ? value : 1);
+            state[k] = gprojt_save(form, &size[k]);
+        }
+        GPROJT_REQUIRE(size[0] == size[1]);
+        for (i = 0; i + 8 < size[0]; ++i)
+            if (state[0][i] != state[1][i]) at = i, ++differ;
+        GPROJT_CHECK(differ == 1 && state[1][at] - state[0][at] == 1);
+        for (byte = 0; byte < 255; ++byte) {
+            double value = 0.5 + (byte - state[0][at]) / 8.0;
+            uint8_t *forged = state[1];
+            forged[at] = (uint8_t)byte;
+            gprojt_seal(forged, size[0]);
+            GPROJT_CHECK((gproj_state_restore(form, forged, size[0], NULL) == GPROJ_OK) ==
+                         (value >= 0 && (which != 1 || value <= 1)));
+        }
+        free(state[0]), free(state[1]);
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- nothing of later solves stays behind a restore -- */
 
 GPROJT_TEST(solved_again_after_a_restore) {
@@ -774,6 +808,7 @@ int main(void) {
     GPROJT_RUN(forged_states_do_no_harm);
     GPROJT_RUN(each_byte_forged);
     GPROJT_RUN(numbers_out_of_range);
+    GPROJT_RUN(eighths_out_of_range);
     GPROJT_RUN(solved_again_after_a_restore);
     GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
