@@ -424,6 +424,40 @@ GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A smooth solve in frames, in which a vertex is drawn away when the end is near: the steps, by multipliers then, become
+   stiff again. Whether it came to its end. */
+static bool gprojt_draw_late(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = (gproj_mesh *)user;
+    double *before = gprojt_keep(mesh), target[3];
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, host);
+    int32_t vertex = 0, group, frames = 0, k;
+    bool done;
+    gprojt_add_planar(form, NULL);
+    memcpy(target, mesh->position, sizeof target);
+    group = gproj_add_targets(form, 1, &vertex, target, 1);
+    gproj_solve_begin(form, 60, &options, NULL);
+    while (gproj_solve_is_on(form)) {
+        gproj_solve_advance(form, 0);
+        if (++frames != 3) continue;
+        target[2] += 0.3;
+        gproj_set_targets(form, group, target);
+    }
+    done = gproj_solve_advance(form, 0).outcome == GPROJ_CONVERGED;
+    GPROJT_CHECK(done || !gproj_form_error(form) || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
+    for (k = 0; done && k < 3; ++k) GPROJT_NEAR(mesh->position[k], target[k], 1e-9);
+    gproj_form_destroy(form);
+    gprojt_put_back(mesh, before);
+    free(before);
+    return done;
+}
+
+GPROJT_TEST(drawn_late_without_memory) {
+    gproj_mesh *mesh = gprojt_twisted(2, 0.3);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_draw_late, mesh) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(corners_are_kept);
@@ -439,5 +473,6 @@ int main(void) {
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(drawn_late_without_memory);
     return gprojt_report();
 }
