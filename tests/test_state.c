@@ -582,11 +582,11 @@ static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t
 GPROJT_TEST(numbers_out_of_range) {
     static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
     static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
-    static const double of_row = 0.8661761457;
+    static const double of_row = 0.8661761457, own = 0.6011150117, of_edge = 0.7080725777;
     static const int32_t last = 123456789, iterations = 7654321, one = 1;
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
-    int32_t closeness = gproj_add_closeness(form, 1), face = 2;
+    int32_t closeness = gproj_add_closeness(form, 1), face = 2, edge = 3, lengths;
     gproj_solve_options options;
     gprojt_ticks ticks = {0, 0};
     gproj_host host;
@@ -597,11 +597,16 @@ GPROJT_TEST(numbers_out_of_range) {
     gproj_set_schedule(form, closeness, gprojt_schedule(weight, decay, last));
     gproj_set_element_weights(form, 0, 1, &face, &factor);
     gproj_system_set_row_weight(gproj_form_system(form), closeness, 3, of_row);
+    lengths = gproj_add_lengths(form, 1, &edge, NULL, 1);
+    gproj_set_element_weights(form, lengths, 1, &edge, &of_edge);
+    gproj_system_set_row_weight(gproj_form_system(form), lengths, 0, own);
     mesh->position[5] = height;
     state = gprojt_save(form, &size);
     gprojt_check_range(form, state, size, weight, 0, 1e50);
     gprojt_check_range(form, state, size, decay, 0, 1);
     gprojt_check_range(form, state, size, of_row, 0, 1e100); /* a product of two weights */
+    gprojt_check_range(form, state, size, own, 0, 1e50);
+    gprojt_check_range(form, state, size, of_edge, 0, 1e50);
     gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
     gprojt_check_integers(form, state, size, last, GPROJ_LAST_GUIDING);
     free(state);
