@@ -23,6 +23,10 @@ bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group) {
     return form->system->group[group].role >= GPROJI_GUARD;
 }
 
+bool gprojt_inside_refuses(const gproj_form *form, const double *before, const double *after) {
+    return gproji_refuse_corners((void *)(uintptr_t)form, before, after);
+}
+
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { return gproji_ends_better(a, b); }
 
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {

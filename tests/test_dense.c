@@ -327,10 +327,12 @@ GPROJT_TEST(dense_columns_of_panels) {
 
 /* -- 3 x 3 -- */
 
-/* (a + shift trace(a) I) x = b for sums of squares, and no answer for matrices that are not positive definite. */
+/* (a + shift trace(a) I) x = b for sums of squares, and no answer for matrices that are not positive definite: also for
+   sums of too few squares, here of integers, so that nothing is rounded. */
 GPROJT_TEST(symmetric_3x3) {
-    static const double indefinite[4][6] = {
-        {0, 0, 0, 0, 0, 0}, {1, 2, 0, 1, 0, 1}, {1, 0, 0, 1, 2, 1}, {-1, 0, 0, 1, 0, 1}};
+    static const double indefinite[7][6] = {{0, 0, 0, 0, 0, 0},  {1, 2, 0, 1, 0, 1}, {1, 0, 0, 1, 2, 1},
+                                            {-1, 0, 0, 1, 0, 1}, {1, 2, 0, 4, 0, 1}, {1, 0, 0, 1, 0, 0},
+                                            {1, 1, 1, 2, 3, 5}};
     double e[3], b[3], x[3], shift;
     uint64_t seed = 6;
     int32_t round, i, k;
@@ -348,7 +350,7 @@ GPROJT_TEST(symmetric_3x3) {
         GPROJT_NEAR(a[1] * x[0] + (a[3] + trace) * x[1] + a[4] * x[2], b[1], 1e-9);
         GPROJT_NEAR(a[2] * x[0] + a[4] * x[1] + (a[5] + trace) * x[2], b[2], 1e-9);
     }
-    for (k = 0; k < 4; ++k) GPROJT_CHECK(!gproji_solve_square3(indefinite[k], 0, b, x));
+    for (k = 0; k < 7; ++k) GPROJT_CHECK(!gproji_solve_square3(indefinite[k], 0, b, x));
 }
 
 int main(void) {

@@ -1040,12 +1040,13 @@ GPROJT_TEST(vertices_of_one_face_are_corners) {
     gproj_mesh_destroy(mesh);
 }
 
-/* The verdict names the one face that is held bent, and none of those that can move. */
+/* The verdict names the one face that is held bent, none of those that can move, and how far from a plane it is. */
 GPROJT_TEST(faces_held_bent_are_named) {
     gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 3);
     int32_t face = mesh->face_count / 2, corner[4], k, h = mesh->face_halfedge[face];
     gproj_form *form;
     gproj_result result;
+    double place[12];
     char words[64];
     for (k = 0; k < 4; ++k, h = mesh->next[h]) corner[k] = mesh->origin[h];
     form = gproj_form_create(mesh, NULL);
@@ -1056,6 +1057,20 @@ GPROJT_TEST(faces_held_bent_are_named) {
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, words));
     GPROJT_CHECK(strstr(result.message, "because 4 of its vertices are held, ") &&
                  !strstr(result.message, "and others"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4)); /* squares of 1/4; two corners go up by 0.05, two down */
+    for (k = 0; k < mesh->vertex_count; ++k) mesh->position[3 * k + 2] = 0;
+    for (k = 0, h = mesh->face_halfedge[face]; k < 4; ++k, h = mesh->next[h]) {
+        corner[k] = mesh->origin[h];
+        memcpy(place + 3 * k, mesh->position + 3 * corner[k], 3 * sizeof *place);
+        place[3 * k + 2] = k % 2 ? -0.05 : 0.05;
+    }
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, 4, corner, place, 1);
+    result = gproj_solve(form, 20, NULL);
+    GPROJT_CHECK(strstr(result.message, "because 4 of its vertices are held, 0.2 mean edges off a plane: "));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }

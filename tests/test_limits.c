@@ -286,7 +286,39 @@ GPROJT_TEST(terms_in_common) {
     }
 }
 
+/* Blocks beyond all memory, or a limit, are refused before the host is asked, and others stay. */
+GPROJT_TEST(blocks) {
+    int limited;
+    for (limited = 0; limited < 2; ++limited) {
+        gprojt_failing counted;
+        gproj_host host;
+        gproji_heap heap;
+        double *block;
+        size_t size;
+        memset(&counted, 0, sizeof counted);
+        host = gprojt_failing_host(&counted);
+        host.allocator.limit = limited ? 1000 : 0;
+        heap = gproji_heap_of(&host);
+        block = (double *)gproji_take_zeroed(&heap, 5, sizeof(double));
+        GPROJT_REQUIRE(block && heap.account.used == 40);
+        for (size = 1; size <= 4096; size *= 4) {
+            GPROJT_CHECK(!gproji_take(&heap, SIZE_MAX / 2 / size + 1, size));
+            GPROJT_CHECK(!gproji_take_zeroed(&heap, SIZE_MAX / size, size));
+        }
+        GPROJT_CHECK(!gproji_retake(&heap, block, 5, SIZE_MAX / 8, sizeof(double)));
+        GPROJT_CHECK(!limited || !gproji_retake(&heap, block, 5, 126, sizeof(double)));
+        GPROJT_CHECK(!limited || !gproji_take(&heap, 961, 1));
+        GPROJT_CHECK(counted.calls == 1 && heap.account.used == 40);
+        block = (double *)gproji_retake(&heap, block, 5, 125, sizeof(double));
+        GPROJT_REQUIRE(block && heap.account.used == 1000 && block[0] == 0 && block[4] == 0);
+        gproji_give(&heap, block, 125, sizeof(double));
+        GPROJT_CHECK(heap.account.used == 0 && heap.account.peak == 1000);
+        GPROJT_CHECK(counted.held == 0 && counted.wrong_sizes == 0);
+    }
+}
+
 int main(void) {
+    GPROJT_RUN(blocks);
     GPROJT_RUN(vertices_and_corners);
     GPROJT_RUN(texts);
     GPROJT_RUN(subdivision);

@@ -521,6 +521,51 @@ GPROJT_TEST(each_kind_of_damage) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Edges and triangles of all sizes, some of them collapsed, or torn out: counted as gproj_spoiled says. */
+GPROJT_TEST(damage_begins_where_it_is_said) {
+    uint64_t seed = 5;
+    int32_t round, v, k, e, f, found[3] = {0, 0, 0};
+    for (round = 0; round < 60; ++round) {
+        gproj_mesh *mesh = gprojt_noisy(1, 5, 0.1, (uint64_t)round);
+        double *original, mean, collapsed[2] = {0, 0}, spikes = 0;
+        gproj_spoiled spoiled;
+        for (v = 0; v < mesh->vertex_count; ++v)
+            for (k = 0; k < 2; ++k) mesh->position[3 * v + k] = exp(4 * mesh->position[3 * v + k]);
+        original = gprojt_keep(mesh);
+        mean = gproj_mesh_mean_edge_length(mesh);
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            const double *to = original + 3 * mesh->origin[mesh->vertex_halfedge[v] ^ 1];
+            double part = round % 2 ? 0.3 * gprojt_uniform(&seed) : 0.9, away = 8 * mean * gprojt_uniform(&seed);
+            if (gprojt_below(&seed, 3)) continue;
+            for (k = 0; k < 3; ++k)
+                mesh->position[3 * v + k] =
+                    to[k] + part * (original[3 * v + k] - to[k]) + (round % 2 || k < 2 ? 0 : away);
+        }
+        for (e = 0; e < mesh->edge_count; ++e) {
+            double now = gprojt_edge_length(mesh, e),
+                   before = gprojt_far(original + 3 * mesh->origin[2 * e], original + 3 * mesh->origin[2 * e + 1]);
+            collapsed[0] += now < 0.1 * before && now < 0.1 * mean;
+            spikes += now > 5 * before && now > 3 * mean;
+        }
+        for (f = 0; f < mesh->face_count; ++f) {
+            double area[2][3], *kept = gprojt_keep(mesh);
+            gproj_mesh_face_area_vector(mesh, f, area[0]);
+            gprojt_put_back(mesh, original);
+            gproj_mesh_face_area_vector(mesh, f, area[1]);
+            gprojt_put_back(mesh, kept);
+            collapsed[1] += gprojt_length3(area[0]) < 0.05 * gprojt_length3(area[1]);
+            free(kept);
+        }
+        spoiled = gproj_measure_spoiled(mesh, original);
+        GPROJT_CHECK(spoiled.collapsed_edges == collapsed[0] && spoiled.collapsed_faces == collapsed[1]);
+        GPROJT_CHECK(spoiled.spikes == spikes);
+        found[0] += spoiled.collapsed_edges, found[1] += spoiled.collapsed_faces, found[2] += spoiled.spikes;
+        free(original);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(found[0] > 50 && found[1] > 50 && found[2] > 50);
+}
+
 /* What was so before does not count: crossed, folded and short from the beginning; neither does a change of scale. */
 GPROJT_TEST(old_damage_does_not_count) {
     gproj_mesh *mesh = gprojt_three_squares();
@@ -715,6 +760,7 @@ int main(void) {
     GPROJT_RUN(narrow_faces_that_are_not_planar);
     GPROJT_RUN(collapsed_edges);
     GPROJT_RUN(each_kind_of_damage);
+    GPROJT_RUN(damage_begins_where_it_is_said);
     GPROJT_RUN(old_damage_does_not_count);
     GPROJT_RUN(crossed_faces_as_in_measure);
     GPROJT_RUN(planarity_of_each_face);

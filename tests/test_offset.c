@@ -577,6 +577,26 @@ GPROJT_TEST(flat_pieces) {
     gproj_mesh_destroy(mesh);
 }
 
+/* What is circular but for a little noise has the offset that it had without: the noise does not choose a direction. */
+GPROJT_TEST(vertex_offsets_do_not_follow_noise) {
+    static const double square[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    static const int32_t degree = 4, corner[] = {0, 1, 2, 3};
+    uint64_t seed = 3;
+    int32_t round, i;
+    for (round = 0; round < 40; ++round) {
+        double p[12], noise = round % 2 ? 1e-7 : 2e-6;
+        gproj_mesh *mesh, *offset;
+        for (i = 0; i < 12; ++i) p[i] = square[i] + noise * (2 * gprojt_uniform(&seed) - 1);
+        mesh = gproj_mesh_create(4, p, 1, &degree, corner, NULL, NULL);
+        GPROJT_REQUIRE(mesh);
+        offset = gproj_mesh_vertex_offset(mesh, 0.5, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        for (i = 0; i < 12; ++i) GPROJT_NEAR(offset->position[i], square[i] + 0.5 * (i % 3 == 2), 10 * noise);
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 GPROJT_TEST(offsets_scale_with_the_mesh) {
     gproj_mesh *mesh = gprojt_moulding(8, 6, 0.1, 4), *large, *a, *b;
     int32_t i, k;
@@ -703,6 +723,7 @@ int main(void) {
     GPROJT_RUN(face_offsets_are_least);
     GPROJT_RUN(meshes_without_shape);
     GPROJT_RUN(flat_pieces);
+    GPROJT_RUN(vertex_offsets_do_not_follow_noise);
     GPROJT_RUN(offsets_scale_with_the_mesh);
     GPROJT_RUN(offsets_are_measured);
     GPROJT_RUN(supports);

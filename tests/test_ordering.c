@@ -350,7 +350,7 @@ GPROJT_TEST(ordering_of_large_graphs) {
         {GRID, 3481, 0.75, 0.75},   {GRID, 10000, 0.5, 0.5},      {GRID, 29929, 0.6, 0.6},
         {STRIP, 20000, 3, 1},       {SHUFFLED, 484, 1.1, 1},      {SHUFFLED, 10000, 0.6, 0.6},
         {TRIANGLES, 10000, 1, 1},   {HEXAGONS, 10000, 1.1, 1.06}, {CUBES, 8000, 0.7, 0.7},
-        {NORMALS, 20000, 0.9, 0.9}, {FORCES, 30000, 0.7, 0.7},
+        {NORMALS, 20000, 0.9, 0.9}, {FORCES, 30000, 0.7, 0.7},    {HUB, 1000, 0.7, 0.7},
     };
     int32_t k;
     for (k = 0; k < (int32_t)(sizeof bound / sizeof bound[0]); ++k) {
@@ -813,12 +813,30 @@ static bool dissect_with(const gproj_host *host, void *user) {
     return done;
 }
 
+/* The whole analysis, by the better ordering: memory is all that may be missing. */
+static bool analyse_with(const gproj_host *host, void *user) {
+    const graph *g = (const graph *)user;
+    gproj_cholesky *c = gproj_cholesky_create(host);
+    gproj_code code = GPROJ_ERROR_MEMORY;
+    if (c) code = gproji_cholesky_analyse_blocks(c, g->nodes, g->weight, g->start, g->adjacent, NULL);
+    GPROJT_CHECK(code == GPROJ_OK || code == GPROJ_ERROR_MEMORY);
+    if (code == GPROJ_OK) GPROJT_CHECK(is_permutation(g->nodes, c->symbolic.order));
+    gproj_cholesky_destroy(c);
+    return code == GPROJ_OK;
+}
+
 GPROJT_TEST(ordering_every_allocation_fails) {
     graph g = make(GRID, 900);
     GPROJT_CHECK(gprojt_fail_every_allocation(dissect_with, &g) >= 36);
     graph_free(&g);
     g = make(RANDOM_DENSE, 300); /* without a separator */
     GPROJT_CHECK(gprojt_fail_every_allocation(dissect_with, &g) >= 50);
+    graph_free(&g);
+    g = make(GRID, 2500); /* dissected at once, by the forecast */
+    GPROJT_CHECK(gprojt_fail_every_allocation(analyse_with, &g) >= 36);
+    graph_free(&g);
+    g = make(RANDOM, 700); /* after minimum degree, which takes many flops */
+    GPROJT_CHECK(gprojt_fail_every_allocation(analyse_with, &g) >= 36);
     graph_free(&g);
 }
 

@@ -163,6 +163,30 @@ GPROJT_TEST(curve_details) {
     }
 }
 
+/* Segments that are short beside the curve, but no rounding, have directions of their own, wherever the curve is: rounding
+   there may be 1e-13, and counts by the curve's extent alone. */
+GPROJT_TEST(short_segments_far_away) {
+    int axis, closed, side;
+    for (axis = 0; axis < 3; ++axis)
+        for (closed = 0; closed < 2; ++closed)
+            for (side = -1; side < 2; side += 2) {
+                double point[12] = {0}, turn;
+                gproj_curve *curve;
+                gproj_curve_hit hit;
+                int k;
+                for (k = 0; k < 4; ++k) point[3 * k + axis] = side * 1000;
+                point[3 + (axis + 1) % 3] = 1;
+                point[6 + (axis + 1) % 3] = 1, point[6 + (axis + 2) % 3] = 1e-12;
+                point[9 + (axis + 1) % 3] = 0.5, point[9 + (axis + 2) % 3] = 0.5;
+                curve = gproj_curve_create(4, point, closed != 0, NULL, NULL);
+                GPROJT_REQUIRE(curve != NULL);
+                hit = gproj_curve_closest(curve, point + 6);
+                turn = hit.segment == 1 ? hit.tangent[(axis + 2) % 3] : 0;
+                GPROJT_NEAR(turn, 1, 1e-12);
+                gproj_curve_destroy(curve);
+            }
+}
+
 GPROJT_TEST(curve_errors) {
     double x[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
     gproj_error error;
@@ -540,6 +564,7 @@ int main(void) {
     GPROJT_RUN(curves_against_brute_force);
     GPROJT_RUN(loops_are_closed_curves);
     GPROJT_RUN(curve_details);
+    GPROJT_RUN(short_segments_far_away);
     GPROJT_RUN(curve_errors);
     GPROJT_RUN(nothing_is_near_nothing);
     GPROJT_RUN(curves_from_meshes);

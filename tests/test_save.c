@@ -101,8 +101,10 @@ static int gprojt_open(const char *path, int flags, ...) {
     return open(path, flags, mode);
 }
 static size_t gprojt_pieces; /* > 0: no write takes more bytes */
+static int gprojt_idle;      /* > 0: the write with this number, from now on, takes none */
 static ssize_t gprojt_write(int descriptor, const void *text, size_t size) {
     if (gprojt_hook()) return -1;
+    if (gprojt_idle > 0 && --gprojt_idle == 0) return 0;
     return write(descriptor, text, gprojt_pieces && size > gprojt_pieces ? gprojt_pieces : size);
 }
 static int gprojt_close(int descriptor) {
@@ -290,6 +292,8 @@ GPROJT_TEST(power_fails_at_any_moment) {
 GPROJT_TEST(writes_in_pieces) {
     gprojt_pieces = 1000;
     GPROJT_CHECK(gprojt_save(19, "roof.obj", NULL) && gprojt_which("roof.obj") == 19);
+    gprojt_idle = 3;
+    GPROJT_CHECK(!gprojt_save(18, "roof.obj", "cannot be saved") && gprojt_idle == 0 && gprojt_which("roof.obj") == 19);
     gprojt_pieces = 0;
     remove("roof.obj");
 }

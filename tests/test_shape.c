@@ -335,7 +335,7 @@ static void gprojt_add_all(gproj_form *form, void *user) {
 GPROJT_TEST(spoiled_meshes_are_told) {
     gproj_mesh *mesh = gprojt_noisy(0, 4, 0, 1);
     const int32_t *end = mesh->origin; /* of edge 0 */
-    int32_t pair[2], e;
+    int32_t pair[2], e, k;
     double places[6] = {0, 0, 0, 0, 0, 0}, lengths[64];
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_result result;
@@ -365,6 +365,22 @@ GPROJT_TEST(spoiled_meshes_are_told) {
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && strstr(result.message, "; but the mesh has shrunk to 0.1 of"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+    for (k = 0; k < 2; ++k) { /* smaller as a whole, with an edge without length: a mesh of a tenth has worse to tell */
+        double *smaller, size = k ? 0.1 : 0.3;
+        mesh = gprojt_noisy(0, 4, 0, 1);
+        smaller = gprojt_keep(mesh);
+        memcpy(smaller + 3 * pair[0], smaller + 3 * pair[1], 3 * sizeof(double));
+        for (e = 0; e < 3 * mesh->vertex_count; ++e) smaller[e] *= size;
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_targets(form, mesh->vertex_count, NULL, smaller, 1);
+        result = gproj_solve(form, 9, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.collapsed_edges > 0);
+        GPROJT_CHECK((strstr(result.message, "1 edge collapsed (edge 0") != NULL) == (k == 0));
+        GPROJT_CHECK((strstr(result.message, "the mesh has shrunk to") != NULL) == (k == 1));
+        free(smaller);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 GPROJT_TEST(every_allocation_fails_once) {

@@ -131,6 +131,70 @@ GPROJT_TEST(corners_are_let_go) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Triangles among the quads, which have no normals to keep from bending: the solve takes the same way wherever the first
+   vertex lies, here after half a turn about the vertical. */
+GPROJT_TEST(triangles_are_not_bent) {
+    gproj_solve_options options = gprojt_smooth();
+    gproj_mesh *mesh[2];
+    gproj_result result[2];
+    int32_t i, v, k;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *quads = gprojt_twisted(8, 0.1);
+        gproj_form *form;
+        double sign = i ? -1 : 1;
+        mesh[i] = gprojt_mesh_of(gprojt_hybrid_grid(8, 8));
+        for (v = 0; v < quads->vertex_count; ++v)
+            for (k = 0; k < 3; ++k) mesh[i]->position[3 * v + k] = (k < 2 ? sign : 1) * quads->position[3 * v + k];
+        gproj_mesh_destroy(quads);
+        form = gproj_form_create(mesh[i], NULL);
+        gprojt_add_planar(form, NULL);
+        result[i] = gproj_solve(form, 100, &options);
+        GPROJT_CHECK(gprojt_is_sound(&result[i]) && gproj_measure_planarity(mesh[i], NULL, NULL) <= 1e-12);
+        gproj_form_destroy(form);
+    }
+    GPROJT_CHECK(result[0].iterations == result[1].iterations);
+    for (v = 0; v < 3 * mesh[0]->vertex_count; ++v)
+        GPROJT_NEAR(mesh[0]->position[v], (v % 3 < 2 ? -1 : 1) * mesh[1]->position[v], 1e-9);
+    gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
+/* A step is refused that takes three quarters of a corner's area and leaves less than a quarter of what it was when the
+   solve began: a corner of a square goes along the diagonal, by the part s, which leaves the part 1 - 2 s. */
+GPROJT_TEST(steps_that_take_corners_are_refused) {
+    static const double way[7][2] = {{0, 0.36}, {0, 0.39}, {0, 0.6}, {0.36, 0.45}, {0.36, 0.47}, {0.42, 0.45}, {0.42, 0.49}};
+    static const bool refused[7] = {false, true, true, false, true, false, true};
+    gproj_solve_options options = gprojt_smooth();
+    int32_t i, k, end;
+    for (k = 0; k < 4; ++k) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
+        double square[12], target[3], values[2][32], centre[3], scale;
+        gproj_system *system;
+        gproj_form *form;
+        for (i = 0; i < 4; ++i) mesh->position[3 * i + 2] = 0;
+        memcpy(square, mesh->position, sizeof square);
+        form = gproj_form_create(mesh, NULL);
+        system = gproj_form_system(form);
+        gproj_add_planarity(form, 1);
+        for (i = 0; i < 3; ++i) target[i] = square[3 * k + i] + (i == 2);
+        gproj_add_targets(form, 1, &k, target, 1); /* something to do */
+        GPROJT_REQUIRE(gproj_system_variable_count(system) <= 32 && gproj_solve_begin(form, 10, &options, NULL));
+        for (end = 0; end < 2; ++end)
+            memcpy(values[end], gproj_system_values(system),
+                   (size_t)gproj_system_variable_count(system) * sizeof(double));
+        gproj_solve_advance(form, 0);
+        gproj_form_units(form, centre, &scale);
+        for (i = 0; i < 14; ++i) {
+            const double *from = square + 3 * k, *to = square + 3 * (3 - k);
+            int32_t c;
+            for (c = 0; c < 2; ++c)
+                values[i % 2][3 * k + c] = (from[c] + way[i / 2][i % 2] * (to[c] - from[c]) - centre[c]) * scale;
+            if (i % 2) GPROJT_CHECK(gprojt_inside_refuses(form, values[0], values[1]) == refused[i / 2]);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
 GPROJT_TEST(steps_are_bent) {
     static const int32_t sizes[3] = {6, 11, 16};
@@ -364,10 +428,46 @@ GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh_destroy(carried);
 }
 
+/* A smooth solve in frames, in which a vertex is drawn away when the end is near: the steps, by multipliers then, become
+   stiff again. Whether it came to its end. */
+static bool gprojt_draw_late(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = (gproj_mesh *)user;
+    double *before = gprojt_keep(mesh), target[3];
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, host);
+    int32_t vertex = 0, group, frames = 0, k;
+    bool done;
+    gprojt_add_planar(form, NULL);
+    memcpy(target, mesh->position, sizeof target);
+    group = gproj_add_targets(form, 1, &vertex, target, 1);
+    gproj_solve_begin(form, 60, &options, NULL);
+    while (gproj_solve_is_on(form)) {
+        gproj_solve_advance(form, 0);
+        if (++frames != 3) continue;
+        target[2] += 0.3;
+        gproj_set_targets(form, group, target);
+    }
+    done = gproj_solve_advance(form, 0).outcome == GPROJ_CONVERGED;
+    GPROJT_CHECK(done || !gproj_form_error(form) || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
+    for (k = 0; done && k < 3; ++k) GPROJT_NEAR(mesh->position[k], target[k], 1e-9);
+    gproj_form_destroy(form);
+    gprojt_put_back(mesh, before);
+    free(before);
+    return done;
+}
+
+GPROJT_TEST(drawn_late_without_memory) {
+    gproj_mesh *mesh = gprojt_twisted(2, 0.3);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_draw_late, mesh) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
+    GPROJT_RUN(triangles_are_not_bent);
+    GPROJT_RUN(steps_that_take_corners_are_refused);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
@@ -377,5 +477,6 @@ int main(void) {
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(drawn_late_without_memory);
     return gprojt_report();
 }

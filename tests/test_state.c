@@ -118,6 +118,12 @@ GPROJT_TEST(frames_without_bound) {
     gproj_mesh_destroy(other);
 }
 
+static bool gprojt_stop_itself(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    (void)system, (void)iteration;
+    gproj_solve_stop((gproj_form *)user);
+    return true;
+}
+
 GPROJT_TEST(frames_can_be_left) {
     gproj_mesh *mesh = gprojt_roof(5, 0.08);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -146,6 +152,10 @@ GPROJT_TEST(frames_can_be_left) {
     GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_CANCELLED &&
                  gproj_solve_advance(form, 0).iterations == 3);
     /* what does not go */
+    options.on_iteration = gprojt_stop_itself, options.user = form;
+    gproj_solve_begin(form, 20, &options, NULL);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_TIME_OUT && gproj_solve_is_on(form));
+    gproj_solve_stop(form);
     GPROJT_CHECK(strstr(gproj_solve_advance(form, -1).message, "must not be negative"));
     GPROJT_CHECK(strstr(gproj_solve_advance(form, 1).message, "a clock"));
     GPROJT_CHECK(strstr(gproj_solve_advance(form, NAN).message, "must not be negative"));
@@ -403,6 +413,62 @@ GPROJT_TEST(every_damage_is_seen) {
     gproj_mesh_destroy(mesh);
 }
 
+/* States cut short that say so, with a right checksum, end too early; nothing behind them is read, as sanitizers see. */
+GPROJT_TEST(states_cut_short) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    uint8_t *state;
+    size_t size, i, k;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    for (i = 33; i < size; ++i) {
+        uint8_t *cut = (uint8_t *)malloc(i);
+        if (!cut) abort();
+        memcpy(cut, state, i);
+        for (k = 0; k < 8; ++k) cut[8 + k] = (uint8_t)((uint64_t)i >> 8 * k);
+        gprojt_seal(cut, i);
+        gprojt_check_refused(form, cut, i, GPROJ_ERROR_SYNTAX, "it ends too early");
+        free(cut);
+    }
+    gprojt_check_same_form(form, state, size);
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* States in which one byte is another one, and one too many at the end, are refused without a trace, but for groups of the
+   library's own that come in, without a weight: then the form is made anew. */
+GPROJT_TEST(refused_states_leave_no_trace) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    double *original = gprojt_keep(mesh);
+    uint8_t *state, *forged, *again;
+    size_t size, longer, size_again, i, k, grown = 0;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    longer = size + 1;
+    forged = (uint8_t *)malloc(longer);
+    if (!forged) abort();
+    for (i = 24; i + 8 < size; ++i) {
+        memcpy(forged, state, size);
+        forged[i]++;
+        forged[size - 8] = 0;
+        for (k = 0; k < 8; ++k) forged[8 + k] = (uint8_t)((uint64_t)longer >> 8 * k);
+        gprojt_seal(forged, longer);
+        GPROJT_CHECK(gproj_state_restore(form, forged, longer, NULL) == GPROJ_ERROR_SYNTAX);
+        again = gprojt_save(form, &size_again);
+        GPROJT_CHECK(size_again > size || (size_again == size && memcmp(state, again, size) == 0));
+        free(again);
+        if (size_again == size) continue;
+        ++grown;
+        gproj_form_destroy(form);
+        gprojt_put_back(mesh, original);
+        form = gprojt_form_in_frames(mesh, &again, &size_again);
+        GPROJT_CHECK(size_again == size && memcmp(state, again, size) == 0);
+        free(again);
+    }
+    GPROJT_CHECK(grown < 10);
+    free(state), free(forged), free(original);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Forged states with a right checksum are taken or refused, and never do harm: what they hold is in its range. */
 GPROJT_TEST(forged_states_do_no_harm) {
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
@@ -563,10 +629,11 @@ static void gprojt_check_integers(gproj_form *form, const uint8_t *state, size_t
 GPROJT_TEST(numbers_out_of_range) {
     static const double weight = 0.3745401188, decay = 0.9507143064, tolerance = 1.7319939418e-9;
     static const double epsilon = 1.5986584842e-3, budget = 1560.1864044, factor = 0.1559945203, height = 0.5808361216;
+    static const double of_row = 0.8661761457, own = 0.6011150117, of_edge = 0.7080725777;
     static const int32_t last = 123456789, iterations = 7654321, one = 1;
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
-    int32_t closeness = gproj_add_closeness(form, 1), face = 2;
+    int32_t closeness = gproj_add_closeness(form, 1), face = 2, edge = 3, lengths;
     gproj_solve_options options;
     gprojt_ticks ticks = {0, 0};
     gproj_host host;
@@ -576,10 +643,17 @@ GPROJT_TEST(numbers_out_of_range) {
     memset(&options, 0, sizeof options);
     gproj_set_schedule(form, closeness, gprojt_schedule(weight, decay, last));
     gproj_set_element_weights(form, 0, 1, &face, &factor);
+    gproj_system_set_row_weight(gproj_form_system(form), closeness, 3, of_row);
+    lengths = gproj_add_lengths(form, 1, &edge, NULL, 1);
+    gproj_set_element_weights(form, lengths, 1, &edge, &of_edge);
+    gproj_system_set_row_weight(gproj_form_system(form), lengths, 0, own);
     mesh->position[5] = height;
     state = gprojt_save(form, &size);
     gprojt_check_range(form, state, size, weight, 0, 1e50);
     gprojt_check_range(form, state, size, decay, 0, 1);
+    gprojt_check_range(form, state, size, of_row, 0, 1e100); /* a product of two weights */
+    gprojt_check_range(form, state, size, own, 0, 1e50);
+    gprojt_check_range(form, state, size, of_edge, 0, 1e50);
     gprojt_check_range(form, state, size, height, -DBL_MAX, DBL_MAX);
     gprojt_check_integers(form, state, size, last, GPROJ_LAST_GUIDING);
     free(state);
@@ -596,6 +670,40 @@ GPROJT_TEST(numbers_out_of_range) {
     gprojt_check_integers(form, state, size, iterations, 0);
     free(state);
     gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Likewise eighths, which have one byte: the one in which two states differ. Which: a group's weight, how it decays, the
+   weight of a row. */
+GPROJT_TEST(eighths_out_of_range) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    int32_t which, k, byte;
+    for (which = 0; which < 3; ++which) {
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+        int32_t closeness = gproj_add_closeness(form, 1);
+        uint8_t *state[2];
+        size_t size[2], i, at = 0, differ = 0;
+        for (k = 0; k < 2; ++k) {
+            double value = 0.5 + 0.125 * k;
+            gproj_set_schedule(form, closeness, gprojt_schedule(which == 0 ? value : 2, which == 1 ? value : 1, 9));
+            gproj_system_set_row_weight(gproj_form_system(form), closeness, 3, which == 2 ? value : 1);
+            state[k] = gprojt_save(form, &size[k]);
+        }
+        GPROJT_REQUIRE(size[0] == size[1]);
+        for (i = 0; i + 8 < size[0]; ++i)
+            if (state[0][i] != state[1][i]) at = i, ++differ;
+        GPROJT_CHECK(differ == 1 && state[1][at] - state[0][at] == 1);
+        for (byte = 0; byte < 255; ++byte) {
+            double value = 0.5 + (byte - state[0][at]) / 8.0;
+            uint8_t *forged = state[1];
+            forged[at] = (uint8_t)byte;
+            gprojt_seal(forged, size[0]);
+            GPROJT_CHECK((gproj_state_restore(form, forged, size[0], NULL) == GPROJ_OK) ==
+                         (value >= 0 && (which != 1 || value <= 1)));
+        }
+        free(state[0]), free(state[1]);
+        gproj_form_destroy(form);
+    }
     gproj_mesh_destroy(mesh);
 }
 
@@ -780,9 +888,12 @@ int main(void) {
     GPROJT_RUN(resumed_with_forces_that_bend);
     GPROJT_RUN(undo_and_redo);
     GPROJT_RUN(every_damage_is_seen);
+    GPROJT_RUN(states_cut_short);
+    GPROJT_RUN(refused_states_leave_no_trace);
     GPROJT_RUN(forged_states_do_no_harm);
     GPROJT_RUN(each_byte_forged);
     GPROJT_RUN(numbers_out_of_range);
+    GPROJT_RUN(eighths_out_of_range);
     GPROJT_RUN(solved_again_after_a_restore);
     GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);

@@ -1054,11 +1054,11 @@ GPROJT_TEST(forces_measured_one_by_one) {
     for (k = 0; k < 6; ++k) gprojt_add_vertex(&soup, corner[k][0], 1.5 * corner[k][1], 2 * corner[k][2]);
     for (k = 0; k < 8; ++k) gprojt_add_face(&soup, 3, face[k]);
     mesh = gprojt_mesh_of(soup);
-    for (k = 0; k < 18; ++k) load[k] = k % 3 == 0 ? 3 + k : 0.01 * k; /* mostly along x */
+    for (k = 0; k < 18; ++k) load[k] = (k % 3 == 0 ? 3 + k : 0.01 * k) / 64; /* all below 1, mostly along x */
     loads.point_load = load;
     form = gproj_form_create(mesh, NULL);
     gproj_add_equilibrium(form, &loads, &supports, 1);
-    for (e = 0; e < 12; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : 2 + 0.25 * (5 * e % 12);
+    for (e = 0; e < 12; ++e) w[e] = gprojt_inside_force(form, e) < 0 ? 0 : (2 + 0.25 * (5 * e % 12)) / 64;
     GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gproj_get_reactions(form, reaction, NULL) == GPROJ_OK);
     memcpy(sum, load, sizeof sum);
     for (e = 0; e < 12; ++e) {
