@@ -16808,7 +16808,7 @@ typedef enum gproji_damage {
 
 typedef struct gproji_damages {
     int32_t count[GPROJI_DAMAGE_COUNT];
-    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge with each kind, or -1 */
+    int32_t first[GPROJI_DAMAGE_COUNT]; /* the first face or edge with each kind, if there are any */
 } gproji_damages;
 
 GPROJI_INTERNAL void gproji_count_damage(gproji_damages *d, gproji_damage kind, int32_t element, bool spoiled) {
@@ -16849,7 +16849,6 @@ GPROJI_INTERNAL void gproji_find_damages(const gproj_mesh *mesh, const double *p
     double grown = HUGE_VAL, mean;
     int32_t i;
     memset(d->count, 0, sizeof d->count);
-    for (i = 0; i < GPROJI_DAMAGE_COUNT; ++i) d->first[i] = -1;
     /* 1. The least factor by which edges have grown, and at least 1: a mesh scaled up as a whole has no spikes. */
     for (i = 0; i < mesh->edge_count && grown > 1; ++i) {
         double before = gproji_edge_length(mesh, original, i), now = gproji_edge_length(mesh, position, i);
