@@ -22191,8 +22191,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    less than a floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the
    constraints creep all the same, every row asks for its floor only; far from the end that would be too early, for
    shapes lose more there than they must. If no step is found even so, the rows ask for the least, faces that are not
-   turned over nor so concave that their sides cross, before they are let go. Of 144 twisted patches 124 end whole so,
-   105 without that stage, and 81 without bends as well; of the 36 in test_smooth 35, 32 and 24.
+   turned over nor so concave that their sides cross, before they are let go. Of the 36 twisted patches in test_smooth
+   35 end whole so, 32 without that stage, and 24 without bends as well.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
@@ -22364,7 +22364,7 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     const gproji_corners *guard = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
-    int32_t f, h, c, k;
+    int32_t f, h, c, k, e;
     bool found = false, planar = gproji_is_on(part->form, part->form->planarity);
     for (f = 0; f < mesh->face_count; ++f) {
         double m[2][3], area[3];
@@ -22382,14 +22382,16 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
             }
         }
     }
-    for (k = 0; k < mesh->edge_count + mesh->halfedge_count; ++k) { /* edges, then bends */
-        bool holds = k < mesh->edge_count
-                         ? gproji_edge_length(mesh, x, k) >= (gproji_corner_least + margin) * guard->length[k]
-                         : !planar || gproji_bend(part, x, (k - mesh->edge_count) / 2) >= gproji_bend_least + margin;
-        if (holds || gproji_corner_acts_now(part, guard->edges + k)) continue;
-        if (first) return true;
-        guard->marked[guard->edges + k] = 1;
-        found = true;
+    for (e = 0; e < mesh->edge_count; ++e) { /* with the bends behind both half-edges */
+        const int32_t item[3] = {guard->edges + e, guard->bends + 2 * e, guard->bends + 2 * e + 1};
+        bool is_long = gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * guard->length[e];
+        bool is_flat = !planar || gproji_bend(part, x, e) >= gproji_bend_least + margin;
+        for (k = 0; k < 3; ++k) {
+            if ((k == 0 ? is_long : is_flat) || gproji_corner_acts_now(part, item[k])) continue;
+            if (first) return true;
+            guard->marked[item[k]] = 1;
+            found = true;
+        }
     }
     return found;
 }
@@ -23671,7 +23673,10 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         int32_t item = in ? 0 : corners->item[k];
         item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
         if (!in || stream->wrong) continue;
-        if (corners->row[item] < 0 && gproji_add_corner(part, item) < 0)
+        if (corners->row[item] >= 0 || gproji_add_corner(part, item) >= 0) continue;
+        if (gproj_system_error(form->system)->code != GPROJ_OK)
+            gproji_spoil_memory(stream);
+        else
             gproji_spoil(stream, "a corner is not one of a face");
     }
 }
@@ -23991,7 +23996,7 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
         if (damping == GPROJI_DRAG_DAMPINGS) break;
         gproji_see_hard(system, NULL);
         how.epsilon *= gproji_drag_damping;
-        if (!gproji_project(system, &how, 0, NULL, drag->base)) break;
+        if (!gproji_project(system, &how, 0, drag->motion, drag->base)) break;
     }
     gproji_orthonormalise(drag);
     /* 3. pull = (L'L)^-1 L', the pseudo-inverse of L. */

@@ -23,8 +23,11 @@ x87='default_guidance guard_is_no_wish a_stray_vertex terms_in_common generated_
 out=$PWD/build/platforms
 rm -rf "$out" && mkdir -p "$out"
 
-if [ -z "${NAMES:-}" ] || grep -qw compile <<<"$NAMES"; then . ./platform_compile.sh; fi
-compiled="$passed passed, $failed failed, $skipped skipped"
+compiled=
+if [ -z "${NAMES:-}" ] || grep -qw compile <<<"$NAMES"; then
+    . ./platform_compile.sh
+    compiled="$passed passed, $failed failed, $skipped skipped"
+fi
 
 usual='mesh text number state cholesky system form' few='mesh number state system drag'
 # NAME | COMPILER | OPTIONS | RUNNER, @ stands for the program | PROGRAMS
@@ -140,7 +143,7 @@ logs=build/platforms/log bash run.sh -j "${JOBS:-2}" "${tests[@]}" | sed '$d' # 
 [ -z "$wineserver" ] || "$wineserver" -k 2>/dev/null
 
 echo
-printf 'platform %-11s %s\n' compile "$compiled"
+[ -z "$compiled" ] || printf 'platform %-11s %s\n' compile "$compiled"
 for name in "${names[@]}"; do
     p=0 f=0 s=0
     for sum in "$out/log/platforms_${name}_"*.sum; do
