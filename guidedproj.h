@@ -23414,11 +23414,12 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
-        char *advice = strstr(result->message, gproji_more_iterations);
+        const char *advice = strstr(result->message, gproji_more_iterations);
         size_t length = strlen(result->message), cut = sizeof gproji_more_iterations - 1;
         form->solve.futile = gproji_tell_held(form, result);
         /* More iterations would not help against what is held. */
-        if (advice && result->message[length]) memmove(advice, advice + cut, strlen(advice + cut) + 1);
+        if (advice && result->message[length])
+            memmove(result->message + (advice - result->message), advice + cut, strlen(advice + cut) + 1);
         if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
