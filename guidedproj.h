@@ -7468,14 +7468,12 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
     return value;
 }
 
-/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 behind the end. */
+/* Passes a value's lowest `bytes` bytes, the lowest first; returns the value that comes in, 0 after an error. */
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
     int32_t i;
-    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) {
-        gproji_spoil(stream, "it ends too early");
-        return 0;
-    }
+    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) gproji_spoil(stream, "it ends too early");
+    if (stream->wrong) return 0;
     for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
     if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
     stream->at += (size_t)bytes;
@@ -8905,6 +8903,9 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     g->tally.part[task] = tally;
 }
 
+/* Safeguards that ask for what there is have phi = 0 but for rounding, which must not choose those that act: all do. */
+static const double gproji_safeguard_touch = 1e-9;
+
 /* Evaluates phi and gradients of a group's rows in one task. Rows without weight get zeros; a contiguous linear row
    keeps its gradient. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
@@ -8947,8 +8948,10 @@ GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
         if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
         row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
         /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again. */
-        row->active = g->kind != GPROJ_BOUND || !(phi >= 0) ||
-                      (row->active && g->role != GPROJI_GUARD && g->role != GPROJI_SAFEGUARD);
+        if (g->role == GPROJI_SAFEGUARD)
+            row->active = !(phi >= gproji_safeguard_touch);
+        else
+            row->active = g->kind != GPROJ_BOUND || !(phi >= 0) || (row->active && g->role != GPROJI_GUARD);
     }
     gproji_tally_task(g, index);
 }
@@ -11078,12 +11081,13 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     return t >= 1.3 ? t : 1;
 }
 
-/* Activates exactly the bounds' rows that are violated at the present x. */
+/* Activates exactly the bounds' rows that are violated at the present x, or touched if they are safeguards. */
 GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) g->row[r].active = !(g->row[r].phi >= 0);
+        double least = g->role == GPROJI_SAFEGUARD ? gproji_safeguard_touch : 0;
+        for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r) g->row[r].active = !(g->row[r].phi >= least);
     }
 }
 

@@ -499,16 +499,13 @@ static double gprojt_bend_tower(uint64_t seed) {
     return residual;
 }
 
-/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other. */
+/* Steps that take the residual off do not lead far away, even where rows nearly depend on each other; and places changed by
+   1e-9 lead to the same end. */
 GPROJT_TEST(restorations_stay_near) {
+    double first = gprojt_bend_tower(1);
     uint64_t seed;
-    int small = 0;
-    for (seed = 1; seed <= 8; ++seed) {
-        double residual = gprojt_bend_tower(seed);
-        GPROJT_CHECK(residual < 0.2);
-        small += residual < 0.03;
-    }
-    GPROJT_CHECK(small >= 6);
+    GPROJT_CHECK(first < 0.04);
+    for (seed = 2; seed <= 5; ++seed) GPROJT_NEAR(gprojt_bend_tower(seed), first, 1e-4);
 }
 
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
