@@ -212,8 +212,8 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
 }
 
 /* Small patches with a fixed or gliding boundary, some of which have hardly another way than to lose an edge or to fold:
-   nearly all of 36 stay whole, because edges and bends are kept as well as corners (24 without bends), and give way in two
-   stages (32 in one), some of them in a later attempt. */
+   nearly all of 36 stay whole, because edges and bends are kept as well as corners (20 without bends), and give way in two
+   stages (24 in one), some of them in a later attempt. */
 GPROJT_TEST(patches_stay_whole) {
     static void (*const build[3])(gproj_form *form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
                                                                    gprojt_add_planar_gliding};
@@ -227,8 +227,8 @@ GPROJT_TEST(patches_stay_whole) {
             ++whole;
             helped += result.attempts > 1;
         }
-    if (whole < 33 || helped < 3) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
-    GPROJT_CHECK(whole >= 33 && helped >= 3);
+    if (whole < 34 || helped < 3) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
+    GPROJT_CHECK(whole >= 34 && helped >= 3);
 }
 
 /* Where the constraints creep because many corners must shrink, these ask for less: 24 patches with a fixed boundary take
