@@ -22197,7 +22197,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    constraints creep all the same, every row asks for its floor only; far from the end that would be too early, for
    shapes lose more there than they must. If no step is found even so, the rows ask for the least, faces that are not
    turned over nor so concave that their sides cross, before they are let go. Of the 36 twisted patches in test_smooth
-   35 end whole so, 24 without that stage, and 20 without bends.
+   35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_bend_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
