@@ -18750,8 +18750,7 @@ struct gproji_part {
 /* A form's forces and loads: see statics. */
 typedef struct gproji_statics {
     gproji_pool pool;  /* has all arrays */
-    gproj_loads loads; /* with the next two arrays */
-    double *edge_density, *point_load;
+    gproj_loads loads; /* its arrays are copies */
     uint8_t *axes;      /* per vertex: the axes along which it is in equilibrium; 0: pinned */
     int32_t *force;     /* per edge: the force's variable; -1: none */
     int32_t *first_row; /* per vertex: in the group of equilibrium */
@@ -21300,11 +21299,9 @@ GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *
     s->load_scale = 1;
     s->loads = *loads;
     if (loads->edge_density)
-        s->edge_density = (double *)gproji_pool_copy(&s->pool, loads->edge_density, edges, sizeof(double));
+        s->loads.edge_density = (double *)gproji_pool_copy(&s->pool, loads->edge_density, edges, sizeof(double));
     if (loads->point_load)
-        s->point_load = (double *)gproji_pool_copy(&s->pool, loads->point_load, vertices, 3 * sizeof(double));
-    s->loads.edge_density = s->edge_density;
-    s->loads.point_load = s->point_load;
+        s->loads.point_load = (double *)gproji_pool_copy(&s->pool, loads->point_load, vertices, 3 * sizeof(double));
     s->axes = (uint8_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->axes);
     s->force = (int32_t *)gproji_pool_take(&s->pool, edges, sizeof *s->force);
     s->first_row = (int32_t *)gproji_pool_take(&s->pool, vertices, sizeof *s->first_row);
@@ -21313,9 +21310,7 @@ GPROJI_INTERNAL bool gproji_create_statics(gproj_form *form, const gproj_loads *
     s->queue = (int32_t *)gproji_pool_take(&s->pool, 2 * vertices, sizeof *s->queue);
     if (gproji_areas_weigh(loads))
         s->face_load = (double *)gproji_pool_take(&s->pool, 4 * (int64_t)mesh->face_count, sizeof *s->face_load);
-    if ((loads->edge_density && !s->edge_density) || (loads->point_load && !s->point_load) || !s->axes || !s->force ||
-        !s->first_row || !s->load_start || !s->work || !s->queue || (gproji_areas_weigh(loads) && !s->face_load))
-        return false;
+    if (s->pool.failed) return false;
     /* 2. Axes along which each vertex is in equilibrium; none for vertices that no face has. */
     for (v = 0; v < mesh->vertex_count; ++v) s->axes[v] = mesh->vertex_halfedge[v] < 0 ? 0 : GPROJI_AXES;
     for (k = 0; k < supports->count; ++k) {
@@ -23747,8 +23742,8 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
     hash = gproji_hash_doubles(hash, &statics->loads.density, 1);
     hash = gproji_hash_doubles(hash, &statics->loads.area_load, 1);
     hash = gproji_hash_doubles(hash, &statics->loads.snow, 1);
-    hash = gproji_hash_doubles(hash, statics->edge_density, (size_t)mesh->edge_count);
-    return gproji_hash_doubles(hash, statics->point_load, 3 * vertices);
+    hash = gproji_hash_doubles(hash, statics->loads.edge_density, (size_t)mesh->edge_count);
+    return gproji_hash_doubles(hash, statics->loads.point_load, 3 * vertices);
 }
 
 /* -- the block -- */
