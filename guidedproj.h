@@ -7779,10 +7779,9 @@ typedef struct gproji_front_rows {
 
 /* Work arrays for steps with dense rows. */
 typedef struct gproji_wide {
-    double *matrix;             /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
-    double *vector;             /* wide_count */
-    double *residual, *balance; /* in refinement; NULL without dense rows */
-    int32_t acting, kept;       /* >>schur: dense rows that act; numbers that count in their columns */
+    double *matrix;       /* wide_count x wide_count: I + Y'Y and then the Cholesky factor */
+    double *vector;       /* wide_count */
+    int32_t acting, kept; /* >>schur: dense rows that act; numbers that count in their columns */
 } gproji_wide;
 
 /* Blocks of variables, and local numbers while a row is added; lists by variable. */
@@ -8877,8 +8876,6 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
     s->vector.sides = s->vector.step = (double *)gproji_pool_take(pool, (wide + 1) * n, sizeof(double));
     s->wide.matrix = (double *)gproji_pool_take(pool, wide * wide, sizeof(double));
     s->wide.vector = (double *)gproji_pool_take(pool, wide, sizeof(double));
-    if (wide > 0) s->wide.residual = (double *)gproji_pool_take(pool, n, sizeof(double));
-    if (wide > 0) s->wide.balance = (double *)gproji_pool_take(pool, n, sizeof(double));
     return !pool->failed;
 }
 
@@ -9093,13 +9090,10 @@ GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool 
 
 /* With dense ("wide") rows the matrix is A + U U', U = (w g_1, w g_2, ...), and the step solves
        A dx + U m = -gradient,    m = w phi + U'dx
-   (Sherman, Morrison, Woodbury, arranged so that w phi never passes through A^-1, where eps^2 would blow it up). From
-   an approximation dx, at first 0, with A = L L', Y = L^-1 U and z = L^-1 (-gradient - A dx), a better one is
-       dx + L'^-1 (z - Y m),    (I + Y'Y) m = w phi + U'dx + Y'z,
-   so that U costs half a solution. */
-
-/* Largest `parts` that need no check: see gproji_refine_step. */
-static const double gproji_parts_most = 1e3;
+   (Sherman, Morrison, Woodbury). With A = L L', Y = L^-1 U and z = -L^-1 gradient it is
+       dx = L'^-1 (z - Y m),    (I + Y'Y) m = w phi + Y'z,
+   so that U costs half a solution. The step's equations hold to the rounding in the parts of z - Y m, which may cancel
+   where eps is small; the next step takes away what is left. */
 
 /* Next dense row that acts, in a fixed order; NULL: no further one. at: {0, -1} before the first. */
 GPROJI_INTERNAL const gproji_row *gproji_next_wide_row(const gproj_system *s, gproji_row_name *at) {
@@ -9142,23 +9136,19 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     return count;
 }
 
-/* wide.vector = w phi, or w phi + U'dx if `ahead`. */
-GPROJI_INTERNAL void gproji_wide_values(gproj_system *s, bool ahead) {
+/* wide.vector = w phi. */
+GPROJI_INTERNAL void gproji_wide_values(gproj_system *s) {
     gproji_row_name at = {0, -1};
     const gproji_row *row;
     int32_t index = 0;
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        const gproji_group *g = &s->group[at.group];
-        double phi = row->phi;
-        if (ahead) phi += gproji_row_times(g, row, s->vector.step);
-        s->wide.vector[index++] = sqrt(gproji_weight2(g, row)) * phi;
+        s->wide.vector[index++] = sqrt(gproji_weight2(&s->group[at.group], row)) * row->phi;
     }
 }
 
-/* z becomes z - Y m; wide.vector: m without Y'z. Returns |z| + sum |Y_k m_k| over |z - Y m|. */
-GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
+/* z becomes z - Y m; wide.vector: (I + Y'Y) m without Y'z, which becomes m. */
+GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
     size_t n = (size_t)s->variable_count, i;
-    double parts = sqrt(gproji_dot(z, z, n));
     int32_t k;
     for (k = 0; k < wide; ++k) s->wide.vector[k] += gproji_dot(gproji_wide_side(s, k), z, n);
     gproji_small_solve(s->wide.matrix, wide, s->wide_count, s->wide.vector);
@@ -9166,9 +9156,7 @@ GPROJI_INTERNAL double gproji_wide_correct(gproj_system *s, int32_t wide, double
         const double *side = gproji_wide_side(s, k);
         double m = s->wide.vector[k];
         for (i = 0; i < n; ++i) z[i] -= m * side[i];
-        parts += fabs(m) * sqrt(gproji_dot(side, side, n));
     }
-    return parts / gproji_fmax(sqrt(gproji_dot(z, z, n)), DBL_MIN);
 }
 
 /* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
@@ -9178,16 +9166,14 @@ GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
     return gproji_wide_columns(s, (size_t)s->variable_count);
 }
 
-/* Solves for the step from its right-hand sides; taken: the factorisation has made z and Y from them already. Returns
-   `parts` for gproji_refine_step. */
-GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
+/* Solves for the step from its right-hand sides; taken: the factorisation has made z and Y from them already. */
+GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide, bool taken) {
     gproj_cholesky *c = s->cholesky;
     size_t n = (size_t)s->variable_count;
-    double parts = 1;
     int32_t i, k;
     if (taken && wide == 0) {
         gproji_cholesky_finish(c, s->vector.step);
-        return parts;
+        return;
     }
     /* 1. z and Y. */
     if (taken)
@@ -9202,61 +9188,14 @@ GPROJI_INTERNAL double gproji_finish_step(gproj_system *s, int32_t wide, bool ta
                     gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), n) + (k == i);
         gproji_small_factor(s->wide.matrix, wide, s->wide_count, 1);
         /* 3. z - Y m. */
-        gproji_wide_values(s, false);
-        parts = gproji_wide_correct(s, wide, s->vector.step);
+        gproji_wide_values(s);
+        gproji_wide_correct(s, wide, s->vector.step);
     }
     gproji_cholesky_backward(c, s->vector.step, s->vector.step);
-    return parts;
 }
 
 /* Solves for the step with the factor of A. */
 GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, gproji_step_sides(s), false); }
-
-/* Refines the step iteratively, at most `rounds` times, until its equations hold to 9 digits. Checking them costs a
-   product with all rows, and is left out if the answer is known. parts: (|z| + sum |Y_k m_k|) / |L'dx|, which are
-   the terms in z - Y m = L'dx. Triangular solves are backward stable: z has a residual like the rounding in |L||z|, Y_k
-   like that in |L||Y_k|, and m, computed from this Y, like that in |Y||Y m|. So the step's residual is `parts` times
-   that without dense rows, the rounding in |L||L'dx|, which is not checked either; besides there is rounding in
-   |U U'||dx|, as U'dx has it, however exact dx is. Only large parts that cancel need a check: dense rows that repeat
-   narrow ones, or each other. */
-GPROJI_INTERNAL void gproji_refine_step(gproj_system *s, int32_t wide, double epsilon, double parts, int32_t rounds) {
-    double *residual = s->wide.residual, *balance = s->wide.balance, *step = s->vector.step;
-    const gproji_row *row;
-    int32_t i, r, v;
-    if (wide == 0 || parts <= gproji_parts_most) return;
-    for (; rounds > 0; --rounds) {
-        gproji_row_name at = {0, -1};
-        double left = 0, size = 0;
-        /* 1. A dx, from all narrow rows that act. */
-        for (v = 0; v < s->variable_count; ++v) residual[v] = epsilon * epsilon * step[v];
-        for (i = 0; i < s->group_count; ++i) {
-            const gproji_group *g = &s->group[i];
-            for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-                row = &g->row[r];
-                if (row->wide || !row->active) continue;
-                gproji_row_add(g, row, gproji_weight2(g, row) * gproji_row_times(g, row, step), residual);
-            }
-        }
-        /* 2. U m at this step, which should balance the residual -gradient - A dx. */
-        memset(balance, 0, (size_t)s->variable_count * sizeof *balance);
-        while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-            const gproji_group *g = &s->group[at.group];
-            gproji_row_add(g, row, gproji_weight2(g, row) * (row->phi + gproji_row_times(g, row, step)), balance);
-        }
-        for (v = 0; v < s->variable_count; ++v) {
-            residual[v] = -s->vector.gradient[v] - residual[v];
-            left = gproji_fmax(left, fabs(residual[v] - balance[v]));
-            size = gproji_fmax(size, fabs(s->vector.gradient[v]) + fabs(balance[v]));
-        }
-        if (left <= 1e-9 * size) return;
-        /* 3. A correction. */
-        gproji_wide_values(s, true);
-        gproji_cholesky_forward(s->cholesky, 1, residual, residual);
-        gproji_wide_correct(s, wide, residual);
-        gproji_cholesky_backward(s->cholesky, residual, residual);
-        for (v = 0; v < s->variable_count; ++v) step[v] += residual[v];
-    }
-}
 
 /* ============================================================================================================
    >>schur   Steps by multipliers, where these are the smaller system; compilation. Uses platform, memory, error,
@@ -10253,7 +10192,7 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     /* I + U'U - Y'Y, and w phi + U'b - Y'z: y is eliminated. */
-    gproji_wide_values(s, false);
+    gproji_wide_values(s);
     for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
@@ -10459,7 +10398,6 @@ enum {
     GPROJI_BOUND_ROUNDS = 3,     /* how often each is found again with other active bounds */
     GPROJI_PATIENCE = 5,         /* iterations without progress before the loop stops, */
     GPROJI_PATIENCE_STIFF = 12,  /* and with a metric */
-    GPROJI_REFINEMENTS = 3,      /* rounds at most for systems with wide rows */
     GPROJI_ACTIVATIONS = 4,      /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,       /* how often a step is found again with new rows of safeguards */
     GPROJI_SAFE_MOST = 50,       /* safeguards act in half of more iterations than this, and in no more */
@@ -10847,7 +10785,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     if (by_multipliers)
         gproji_schur_finish(s);
     else
-        gproji_refine_step(s, wide, epsilon, gproji_finish_step(s, wide, sides > 0), GPROJI_REFINEMENTS);
+        gproji_finish_step(s, wide, sides > 0);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     return true;
 }
