@@ -267,6 +267,34 @@ GPROJT_TEST(handles_at_their_means) {
     free(before);
 }
 
+/* The size of a handle's weights only says how far its vertices go along, and handles may come in any order. */
+GPROJT_TEST(handles_of_any_size_and_order) {
+    static const int64_t start[2][3] = {{0, 2, 4}, {0, 2, 4}};
+    static const int32_t vertex[2][4] = {{22, 23, 40, 41}, {40, 41, 22, 23}};
+    static const double weight[2][4] = {{1e-3, 5e-4, 0.5, 1}, {0.5, 1, 1e-3, 5e-4}};
+    static const double moved[2][6] = {{0, 0, 200, 0, 0, 0.3}, {0, 0, 0.3, 0, 0, 200}}, none[6] = {0};
+    double *end = NULL;
+    int32_t k;
+    for (k = 0; k < 2; ++k) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(7, 0.05), GPROJT_PLANAR, NULL);
+        gproj_handles handles;
+        gproj_drag *drag;
+        memset(&handles, 0, sizeof handles);
+        handles.count = 2, handles.start = start[k], handles.vertex = vertex[k], handles.weight = weight[k];
+        handles.position = none;
+        drag = gproj_drag_begin(stage.form, &handles, NULL, NULL);
+        GPROJT_REQUIRE(drag);
+        GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 6);
+        GPROJT_CHECK(gproj_drag_move(drag, moved[k]) == GPROJ_OK);
+        GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+        if (k == 0) end = gprojt_keep(stage.mesh);
+        GPROJT_CHECK(gprojt_largest_move(end, stage.mesh->position, stage.mesh->vertex_count) < 1e-9);
+        GPROJT_CHECK(gprojt_largest_move(end, stage.start, stage.mesh->vertex_count) > 0.05);
+        gprojt_clear_stage(&stage);
+    }
+    free(end);
+}
+
 /* What cannot follow stays behind, and does not hold back the others. */
 GPROJT_TEST(handles_that_cannot_follow) {
     gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
@@ -981,6 +1009,7 @@ int main(void) {
     GPROJT_RUN(the_change_is_the_smallest);
     GPROJT_RUN(points_of_a_cage);
     GPROJT_RUN(handles_at_their_means);
+    GPROJT_RUN(handles_of_any_size_and_order);
     GPROJT_RUN(handles_that_cannot_follow);
     GPROJT_RUN(bounds_at_their_limit_hold);
     GPROJT_RUN(there_and_back);
