@@ -17129,9 +17129,7 @@ GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double dist
 /* Do the two meshes have the same vertices, half-edges and faces, by their numbers? */
 GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b) {
     size_t bytes;
-    if (!a || !b || a->vertex_count != b->vertex_count || a->face_count != b->face_count ||
-        a->halfedge_count != b->halfedge_count)
-        return false;
+    if (!a || !b || a->vertex_count != b->vertex_count || a->halfedge_count != b->halfedge_count) return false;
     bytes = (size_t)a->halfedge_count * sizeof *a->origin;
     return memcmp(a->origin, b->origin, bytes) == 0 && memcmp(a->face, b->face, bytes) == 0;
 }

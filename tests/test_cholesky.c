@@ -892,6 +892,7 @@ GPROJT_TEST(cholesky_arguments) {
     static const double value[] = {2, 1, 2};
     double x[2] = {3, 3};
     gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN);
+    GPROJT_CHECK(gproj_cholesky_error(c)->code == GPROJ_OK && gproj_cholesky_error(c)->index == -1);
     GPROJT_CHECK(gproj_cholesky_factor(c, value) == GPROJ_FACTOR_FAILED);
     GPROJT_CHECK(gproj_cholesky_error(c)->code == GPROJ_ERROR_STATE);
     GPROJT_CHECK(gproj_cholesky_solve(c, 1, x, x) == GPROJ_ERROR_STATE);

@@ -306,6 +306,7 @@ GPROJT_TEST(blocks) {
             GPROJT_CHECK(!gproji_take_zeroed(&heap, SIZE_MAX / size, size));
         }
         GPROJT_CHECK(!gproji_retake(&heap, block, 5, SIZE_MAX / 8, sizeof(double)));
+        GPROJT_CHECK(!gproji_retake(&heap, block, 5, SIZE_MAX / 8 + 2, sizeof(double))); /* the product wraps around */
         GPROJT_CHECK(!limited || !gproji_retake(&heap, block, 5, 126, sizeof(double)));
         GPROJT_CHECK(!limited || !gproji_take(&heap, 961, 1));
         GPROJT_CHECK(counted.calls == 1 && heap.account.used == 40);

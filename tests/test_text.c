@@ -122,6 +122,7 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 1 0\nv 2 2 0\nf 1 2 3\nf 2 3 4\nf 3 4 5\nf 4 5 1\nf 5 1 2\n",
      GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, 2, "line 8: faces 2 and 3 cannot agree"},
     {"OFF", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 1, "cut off"},
+    {"OFFER\n4 1 2\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "is it an OBJ or OFF text?"},
     {"OFF\n4", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 2, "after 1 of 2 counts"},
     {"OFF\nx 1 2", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 2, "'x' is not a whole number"},
     {"OFF\n-4 1 2", GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, 2, "a count of -4 vertices"},
@@ -189,11 +190,11 @@ GPROJT_TEST(other_formats) {
     stl[80] = 2;
     mesh = gproj_mesh_read(stl, sizeof stl, GPROJ_FORMAT_DETECT, NULL, &error);
     GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "binary STL"));
-    for (i = 0; i < 2; ++i) { /* without triangles, and with so many that their number has two bytes */
-        size_t size = i ? 84 + 300 * 50 : 84;
+    for (i = 0; i < 2; ++i) { /* without triangles, and with so many that their number has three bytes */
+        size_t size = i ? 84 + 70000 * 50 : 84;
         char *large = (char *)calloc(1, size);
         if (!large) abort();
-        if (i) large[80] = 300 % 256, large[81] = 300 / 256;
+        if (i) large[80] = 70000 % 256, large[81] = 70000 / 256 % 256, large[82] = 1;
         mesh = gproj_mesh_read(large, size, GPROJ_FORMAT_DETECT, NULL, &error);
         GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "binary STL"));
         free(large);
