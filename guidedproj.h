@@ -16423,11 +16423,11 @@ GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t
 }
 
 /* |w1 - w2 + w3 - w4| for the four faces' angles around an interior vertex: 0 if they touch a cone, but anything where
-   the vertex is flat, though its normals do not show it. 0 at other vertices. */
+   the vertex is flat, though its normals do not show it. 0 at vertices of other valences. */
 GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
     double a[3], b[3], cross[3], sum = 0;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
-    if (start < 0 || mesh->face[start] < 0 || gproj_mesh_valence(mesh, vertex) != 4) return 0;
+    if (gproj_mesh_valence(mesh, vertex) != 4) return 0;
     do {
         int32_t next = gproji_rotate(mesh, h);
         gproji_sub3(gproji_corner_position(mesh, h ^ 1), gproji_corner_position(mesh, h), a);
@@ -16556,7 +16556,7 @@ GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *pos
 GPROJI_INTERNAL bool gproji_is_folded(gproji_normals *normals, int32_t edge) {
     int32_t left = normals->mesh->face[2 * edge], right = normals->mesh->face[2 * edge + 1];
     double a[3], b[3];
-    if (left < 0 || right < 0) return false;
+    if (right < 0) return false; /* the first half-edge of an edge is always in a face */
     gproji_recall_normal(normals, left, a);
     gproji_recall_normal(normals, right, b);
     return gproji_dot3(a, b) < -0.5;
@@ -16724,10 +16724,8 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
         sum += d, squares += d * d;
         m.deviation_max = gproji_fmax(m.deviation_max, d / diagonal);
     }
-    if (mesh->vertex_count) {
-        m.deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
-        m.displacement_mean = sum / mesh->vertex_count / edge;
-    }
+    m.deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
+    m.displacement_mean = sum / mesh->vertex_count / edge;
     for (f = 0; f < mesh->face_count; ++f) {
         gproji_area_vector(mesh, original, f, before);
         gproji_area_vector(mesh, mesh->position, f, now);
@@ -18845,7 +18843,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
        the digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
     for (k = 0; k < 3; ++k) {
-        double low = mesh->vertex_count ? mesh->position[3 * (size_t)first + (size_t)k] : 0, high = low;
+        double low = mesh->position[3 * (size_t)first + (size_t)k], high = low;
         for (i = 0; i < mesh->vertex_count; ++i) {
             if (mesh->edge_count && mesh->vertex_halfedge[i] < 0) continue;
             low = gproji_fmin(low, mesh->position[3 * (size_t)i + (size_t)k]);
@@ -18870,7 +18868,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
 
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form) {
     if (!form) return gproji_no_object();
-    if (form->error.code != GPROJ_OK || !form->system) return &form->error;
+    if (form->error.code != GPROJ_OK) return &form->error; /* without a system there is one */
     return gproj_system_error(form->system);
 }
 
@@ -19318,10 +19316,10 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     if (!part) return -1;
     gproji_update_areas(form);
     for (f = 0; f < mesh->face_count; ++f)
-        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) ++faces, corners += (size_t)mesh->face_degree[f];
+        if (mesh->face_degree[f] > 3) ++faces, corners += (size_t)mesh->face_degree[f];
     gproji_expect_group(form, part->group, 3 * faces, faces + corners, 9, 3 * faces + 9 * corners);
     for (f = 0; f < mesh->face_count && gproji_form_ready(form); ++f)
-        if (mesh->face_degree[f] > 3 && form->normal[f] < 0) gproji_add_normal(part, f);
+        if (mesh->face_degree[f] > 3) gproji_add_normal(part, f);
     form->planarity = part->group;
     if (gproji_form_ready(form)) gproji_declare_zero_sum(form->system, part->group);
     return gproji_built(form, part->group);
@@ -19596,7 +19594,6 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
         tangential->element[tangential->count++] = d->element;
         return;
     }
-    if (!gproji_system_has_group(form->system, group)) return;
     /* Successive rows share their terms if they have equally many points. */
     last = gproji_group_at(form->system, group)->row_count - 1;
     for (i = 0; i < points; ++i) gproji_set_term(&term[i], i, -1, i == 0 ? 1 : -1.0 / d->count);
@@ -20111,12 +20108,13 @@ static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPR
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
-    double n[3] = {0, 0, 0}, across[2][3];
+    double n[3] = {0, 0, 0}, across[2][3], largest = 0;
     int32_t group, i, k, c;
     if (!gproji_form_ready(form) || !gproji_take_list(form, "orthogonal edges", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
-    if (normal) gproji_copy3(normal, n);
-    if (!gproji_normalise3(n, gproji_zero) || !gproji_is_finite(gproji_length3(n)))
+    for (c = 0; normal && c < 3; ++c) largest = gproji_fmax(largest, fabs(normal[c]));
+    for (c = 0; normal && c < 3; ++c) n[c] = normal[c] / largest; /* of any length: squares of 1e200 overflow */
+    if (!gproji_normalise3(n, gproji_zero))
         return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal has no direction"));
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
@@ -21112,12 +21110,10 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
     const gproji_statics *s = form->statics;
     int32_t start = mesh->vertex_halfedge[vertex], h = start, spokes = 0, count, c, k;
     int64_t l;
-    /* 1. Spokes, the edges that have a force: its variable, and the vertex at the other end. */
+    /* 1. Spokes, the edges, each with a force: its variable, and the vertex at the other end. */
     do {
-        if (s->force[h / 2] >= 0) {
-            spoke[2 * spokes] = s->force[h / 2];
-            spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
-        }
+        spoke[2 * spokes] = s->force[h / 2];
+        spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
     /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for
@@ -21131,13 +21127,12 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
         int32_t *local;
         if (!(s->axes[vertex] >> c & 1)) continue;
         if (c == 2 && s->load_start[vertex] < s->load_start[vertex + 1]) break;
-        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term, spokes > 0 ? 2 * spokes + 1 : 0,
-                                       0, vertex);
+        local = gproji_add_placed_rows(form->system, s->group, -1, 1, 2 * spokes, term, 2 * spokes + 1, 0, vertex);
         for (k = 0; k < spokes && local; ++k) {
             local[k > 0 ? 2 * k + 1 : 0] = spoke[2 * k];
             local[2 * k + 2] = 3 * spoke[2 * k + 1] + c;
         }
-        if (local && spokes > 0) local[1] = 3 * vertex + c;
+        if (local) local[1] = 3 * vertex + c;
     }
     if (c == 3) return;
     /* 3. A z row with a weight has the weight's terms at its end, for gproji_linearise_weight to fill in. */
@@ -21172,7 +21167,7 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start, around;
         statics->load_start[v] = count;
-        if (!(statics->axes[v] & 4) || start < 0 || !(areas || lengths)) continue;
+        if (!(statics->axes[v] & 4) || !(areas || lengths)) continue;
         gproji_note_weight(statics, v, v, mark, &count);
         do {
             gproji_note_weight(statics, v, mesh->origin[mesh->twin[h]], mark, &count);
@@ -21604,7 +21599,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
         for (t = p->start[e]; t < p->start[e + 1]; ++t) p->b[p->row[t]] -= mean * p->value[t];
     }
     memset(&problem, 0, sizeof problem);
-    problem.rows = mesh->vertex_count ? gproji_axis_row(s, mesh->vertex_count - 1, 3) : 0;
+    problem.rows = gproji_axis_row(s, mesh->vertex_count - 1, 3);
     problem.columns = mesh->edge_count;
     problem.start = p->start, problem.row = p->row, problem.value = p->value, problem.b = p->b;
     problem.lower = p->lower, problem.upper = p->upper, problem.damping = damping;

@@ -198,6 +198,24 @@ GPROJT_TEST(edges_orthogonal_to_a_plane) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Only its direction counts: with lengths whose squares are beyond all numbers the solve has the same bits. */
+GPROJT_TEST(normals_of_any_length) {
+    double places[3][3 * (SIDE + 1) * (SIDE + 1)];
+    int k;
+    for (k = 0; k < 3; ++k) {
+        const double length = ldexp(1, 660 * (k - 1)), normal[3] = {length, 2 * length, 20 * length};
+        gproj_mesh *mesh = gprojt_square(0.1, 6);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_add_orthogonal_edges(form, normal, 5, NULL, 1) >= 0);
+        GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
+        memcpy(places[k], mesh->position, sizeof places[k]);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(!memcmp(places[0], places[1], sizeof places[1]));
+    GPROJT_CHECK(!memcmp(places[2], places[1], sizeof places[1]));
+}
+
 /* At every boundary vertex of the grid but the corners, by numbers of the grid. */
 GPROJT_TEST(boundary_at_right_angles) {
     gproj_mesh *mesh = gprojt_square(0.05, 6);
@@ -256,10 +274,10 @@ GPROJT_TEST(lifting) {
 
 GPROJT_TEST(refusals) {
     static const int32_t far[] = {0, 1, 2, 1000000};
-    static const double zero[3] = {0, 0, 0}, none[3] = {0, 0, NAN}, up[3] = {0, 0, 1};
+    static const double zero[3] = {0, 0, 0}, none[3] = {0, 0, NAN}, up[3] = {0, 0, 1}, endless[3] = {0, INFINITY, 1};
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
     int i;
-    for (i = 0; i < 8; ++i) {
+    for (i = 0; i < 9; ++i) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t group = i == 0   ? gproj_add_coplanar(form, 4, far, 1)
                         : i == 1 ? gproj_add_collinear(form, 4, far, 1)
@@ -268,6 +286,7 @@ GPROJT_TEST(refusals) {
                         : i == 4 ? gproj_add_orthogonal_edges(form, zero, 1, NULL, 1)
                         : i == 5 ? gproj_add_orthogonal_edges(form, NULL, 1, NULL, 1)
                         : i == 6 ? gproj_add_orthogonal_edges(form, none, 1, NULL, 1)
+                        : i == 8 ? gproj_add_orthogonal_edges(form, endless, 1, NULL, 1)
                                  : gproj_add_orthogonal_edges(form, up, 4, far, 1);
         bool index = i < 2 || i == 7;
         GPROJT_CHECK(group == -1);
@@ -308,6 +327,7 @@ int main(void) {
     GPROJT_RUN(chosen_vertices);
     GPROJT_RUN(special_sets);
     GPROJT_RUN(edges_orthogonal_to_a_plane);
+    GPROJT_RUN(normals_of_any_length);
     GPROJT_RUN(boundary_at_right_angles);
     GPROJT_RUN(lifting);
     GPROJT_RUN(refusals);

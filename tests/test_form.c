@@ -605,9 +605,13 @@ GPROJT_TEST(a_boundary_loop_in_one_point) {
     for (all = 0; all < 2; ++all) {
         gproj_mesh *mesh = gprojt_mesh_of(gprojt_tube(9, 5));
         double *before, off = 0;
+        gprojt_failing counted;
+        gproj_host host;
         gproj_form *form;
         gproj_result result;
         int32_t h, l, v;
+        memset(&counted, 0, sizeof counted);
+        host = gprojt_failing_host(&counted);
         for (l = 0; l <= all; ++l) {
             h = mesh->loop_halfedge[l];
             do {
@@ -616,7 +620,7 @@ GPROJT_TEST(a_boundary_loop_in_one_point) {
             } while (h != mesh->loop_halfedge[l]);
         }
         before = gprojt_keep(mesh);
-        form = gproj_form_create(mesh, NULL);
+        form = gproj_form_create(mesh, &host);
         GPROJT_CHECK(gproj_add_gliding_boundary(form, 1) == 0);
         GPROJT_CHECK(gproj_form_group_info(form, 0).rows == 3 * gprojt_count_boundary(mesh));
         gproj_add_fairness(form, 0.3);
@@ -632,6 +636,7 @@ GPROJT_TEST(a_boundary_loop_in_one_point) {
         }
         GPROJT_NEAR(off / gprojt_unit(form), 0, 1e-12);
         GPROJT_NEAR(gprojt_off_boundary(form, mesh, before), 0, 1e-12);
+        GPROJT_CHECK(gproj_form_memory(form).used == counted.bytes);
         GPROJT_CHECK(gprojt_largest_move(before, mesh->position, mesh->vertex_count) > 0.01 * gprojt_unit(form));
         gproj_form_destroy(form);
         free(before);
@@ -2004,6 +2009,22 @@ GPROJT_TEST(positions_beyond_the_units) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Neither can a form begin with a vertex that is so far from the others, though its coordinates are in range. */
+GPROJT_TEST(a_stray_vertex_beyond_the_units) {
+    gprojt_soup soup = gprojt_quad_grid(4, 4);
+    gproj_mesh *mesh;
+    gproj_form *form;
+    int32_t i;
+    for (i = 0; i < 3 * soup.vertex_count; ++i) soup.position[i] *= 1e-20;
+    i = gprojt_add_vertex(&soup, 0, 1e60, 0);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER && gproj_form_error(form)->index == i);
+    GPROJT_CHECK(gproj_add_planarity(form, 1) == -1 && gproj_solve(form, 3, NULL).outcome == GPROJ_FAILED);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A vertex without faces, far away, changes neither the tolerance nor the result. */
 GPROJT_TEST(a_stray_vertex) {
     gprojt_soup soup = gprojt_quad_grid(4, 4);
@@ -2104,11 +2125,13 @@ GPROJT_TEST(spheres_are_no_circles) {
 /* -- refusals -- */
 
 enum {
-    GPROJT_FORM_CALLS = 16
+    GPROJT_FORM_CALLS = 28
 };
 static int32_t gprojt_wrong_form_call(gproj_form *form, int call) {
     static const int32_t bad[2] = {0, 25}, negative[2] = {0, -1}, good[2] = {0, 1};
     static const double points[6] = {0, 0, 0, 1, 0, 0}, unreal[6] = {0, 0, 0, 1, NAN, 0};
+    static const int32_t early[2] = {25, -7}; /* the first one of two is named */
+    static const double long_one[1] = {INFINITY}, weights[2] = {1, 2e50};
     switch (call) {
     case 0: return gproj_add_fixed(form, 2, bad, 1);
     case 1: return gproj_add_fixed(form, 2, negative, 1);
@@ -2127,6 +2150,18 @@ static int32_t gprojt_wrong_form_call(gproj_form *form, int call) {
     case 13: return gproj_add_targets(form, 2, good, unreal, 1);
     case 14:
         return -(gproj_set_targets(form, gproj_add_targets(form, 2, good, points, 1), unreal) == GPROJ_ERROR_NUMBER);
+    case 16: return gproj_add_fixed(form, 2, early, 1);
+    case 17: return -(gproj_set_targets(form, 5, points) == GPROJ_ERROR_ARGUMENT);
+    case 18: return gproj_add_planarity(form, 1) == 1 ? gproj_add_planarity(form, NAN) : 0;
+    case 19: return gproj_add_lengths(form, 1, NULL, long_one, 1);
+    case 20: return gproj_add_length_bounds(form, 0, NULL, INFINITY, INFINITY, 1);
+    case 21: return gproj_add_length_bounds(form, 0, NULL, -INFINITY, -INFINITY, 1);
+    case 22: return gproj_add_cost(form, 1, INFINITY, 5, 1);
+    case 23: return gproj_add_cost(form, 1, NAN, 5, 1);
+    case 24: return -(gproj_set_element_weights(form, 0, -1, good, weights) == GPROJ_ERROR_ARGUMENT);
+    case 25: return -(gproj_set_element_weights(form, 0, 2, negative, weights) == GPROJ_ERROR_INDEX);
+    case 26: return -(gproj_set_element_weights(form, 0, 2, good, weights) == GPROJ_ERROR_ARGUMENT);
+    case 27: return -(gproj_set_element_weights(form, 0, 26, NULL, points) == GPROJ_ERROR_ARGUMENT);
     default: return -(gproj_set_schedule(form, 44, gprojt_schedule(1, 1, 0)) == GPROJ_ERROR_INDEX);
     }
 }
@@ -2159,7 +2194,19 @@ GPROJT_TEST(form_refusals) {
                                                         "decay 3",
                                                         "coordinate y of target 1 is nan",
                                                         "coordinate y of target 1 is nan",
-                                                        "no group 44"};
+                                                        "no group 44",
+                                                        "no vertex 25",
+                                                        "group 5 has no targets",
+                                                        "'planarity' (weight nan",
+                                                        "edge 0 would have the length inf",
+                                                        "min = inf",
+                                                        "max = -inf",
+                                                        "the prices 1 and inf",
+                                                        "the prices 1 and nan",
+                                                        "-1 of the 25",
+                                                        "no vertex -1",
+                                                        "2e+50 of vertex 1",
+                                                        "26 of the 25"};
     int call;
     for (call = 0; call < GPROJT_FORM_CALLS; ++call) {
         gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 6); /* 5 x 6 vertices */
@@ -2344,6 +2391,7 @@ GPROJT_TEST(no_form_and_no_mesh) {
     GPROJT_CHECK(gproj_set_targets(NULL, 0, props.position) == GPROJ_ERROR_MEMORY);
     gproj_form_units(NULL, centre, &scale);
     GPROJT_CHECK(centre[0] == 0 && centre[1] == 0 && centre[2] == 0 && scale == 1);
+    GPROJT_CHECK(!gproj_form_is_corner(NULL, 0));
     gprojt_give_props(&props);
     gproj_mesh_destroy(mesh);
 }
@@ -2364,8 +2412,9 @@ GPROJT_TEST(own_rows_units_and_cancelling) {
     gproj_solve_options options;
     gproj_result result;
     int32_t own, k;
-    gproj_form_units(form, centre, &scale);
+    gproj_form_units(form, NULL, &scale); /* only one of them */
     GPROJT_NEAR(scale * gproj_mesh_mean_edge_length(mesh), 1, 1e-14);
+    gproj_form_units(form, centre, NULL);
     for (k = 0; k < 3; ++k)
         GPROJT_NEAR(gproj_system_values(gproj_form_system(form))[3 * 5 + k],
                     (mesh->position[3 * 5 + k] - centre[k]) * scale, 1e-13);
@@ -2552,6 +2601,7 @@ int main(void) {
     GPROJT_RUN(tolerance_is_told);
     GPROJT_RUN(positions_beyond_all_measures);
     GPROJT_RUN(positions_beyond_the_units);
+    GPROJT_RUN(a_stray_vertex_beyond_the_units);
     GPROJT_RUN(a_stray_vertex);
     GPROJT_RUN(spheres_are_no_circles);
     GPROJT_RUN(a_mesh_too_small_for_units);

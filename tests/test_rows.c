@@ -269,14 +269,16 @@ GPROJT_TEST(wrong_rows_are_refused) {
     static const char *const words[] = {"neither", "neither",    "neither",    "none of",     "none of",
                                         "3 each",  "1 or more",  "1 or more",  "beyond 1e70", "1e50",
                                         "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither",
-                                        "-1 terms", "or no list"};
+                                        "-1 terms", "or no list", "none of",   "no vertex -2", "gproj_kind",
+                                        "1 or more", "1 or more", "gproj_kind", "gproj_kind"};
     int32_t i;
-    for (i = 0; i < 17; ++i) {
+    for (i = 0; i < 24; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t planar = gproj_add_planarity(form, 1), got;
-        int32_t group = gproj_add_rows(form, "mine", i == 11 ? (gproj_kind)7 : GPROJ_CONSTRAINT,
-                                       i == 12 ? GPROJ_PLACE_ROW : GPROJ_PLACE_VERTEX, i == 9 ? -1 : 1);
+        gproj_kind kind = i == 11 ? (gproj_kind)7 : i == 19 ? (gproj_kind)-1 : GPROJ_CONSTRAINT;
+        gproj_place place = i == 12 ? GPROJ_PLACE_ROW : i == 22 ? (gproj_place)-1 : GPROJ_PLACE_VERTEX;
+        int32_t group = gproj_add_rows(form, "mine", kind, i == 23 ? (gproj_place)99 : place, i == 9 ? -1 : 1);
         gproj_term term = gprojt_term(0, -1, i == 10 ? INFINITY : 1);
         if (i == 0) term.i = -1;
         if (i == 1) term.i = 3 * mesh->vertex_count; /* a normal: the library's */
@@ -289,7 +291,11 @@ GPROJT_TEST(wrong_rows_are_refused) {
               : i == 6 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 0, values, NULL, NULL)
               : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
               : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
-              : i == 9 || i == 11 || i == 12 ? group
+              : i == 17 ? gproj_form_add_row(form, -1, 1, &term, 0, 0)
+              : i == 18 ? gproj_form_add_row(form, group, 1, &term, 0, -2)
+              : i == 20 ? gproj_form_add_unknowns(form, group, (gproj_unit)-1, 1, values, NULL, NULL)
+              : i == 21 ? gproj_form_add_unknowns(form, group, (gproj_unit)9, 1, values, NULL, NULL)
+              : i == 9 || i == 11 || i == 12 || i == 19 || i >= 22 ? group
               : i == 15                      ? gproj_form_add_row(form, group, -1, &term, 0, 0)
               : i == 16                      ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
               : i == 13                      ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
@@ -317,6 +323,59 @@ GPROJT_TEST(unknowns_refused) {
     GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 2, value, NULL) == GPROJ_OK &&
                  gproj_form_error(form)->code == GPROJ_OK);
     GPROJT_NEAR(value[1], mesh->position[1], 1e-12);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, INT32_MAX, 2, value, &error) == GPROJ_ERROR_INDEX);
+    GPROJT_CHECK(gproj_form_residuals(form, 0, NULL, &error) == GPROJ_ERROR_ARGUMENT);
+    gproj_add_planarity(form, NAN); /* what a form after an error is asked is answered by this error */
+    GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 2, value, &error) == gproj_form_error(form)->code);
+    GPROJT_CHECK(!strcmp(error.message, gproj_form_error(form)->message));
+    GPROJT_CHECK(gproj_form_residuals(form, 0, value, &error) == gproj_form_error(form)->code);
+    GPROJT_CHECK(!strcmp(error.message, gproj_form_error(form)->message));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Groups without a name are "rows"; those with unknowns have their own each, also in states. */
+GPROJT_TEST(groups_have_their_own_unknowns) {
+    static const double none[3] = {0, 0, 0}, start[2][2] = {{3, 4}, {5, 6}};
+    gproj_mesh *mesh = gprojt_cap(4, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group[2], at[2], k, round;
+    uint8_t *state = NULL;
+    size_t size = 0;
+    double value[2];
+    for (k = 0; k < 2; ++k) {
+        group[k] = gproj_add_rows(form, NULL, GPROJ_WISH, GPROJ_PLACE_NONE, 1);
+        at[k] = gproj_form_add_unknowns(form, group[k], k ? GPROJ_UNIT_NUMBER : GPROJ_UNIT_LENGTH, 2, start[k], NULL, NULL);
+        GPROJT_CHECK(!strcmp(gproj_form_group_info(form, group[k]).name, "rows"));
+    }
+    for (k = 0; k < 2; ++k) { /* the sum of the first unknowns is 10, the difference 0: both are 5 */
+        gproj_term term[2] = {gprojt_term(at[0], -1, 1), gprojt_term(at[1], -1, k ? -1 : 1)};
+        GPROJT_CHECK(gproj_form_add_row(form, group[k], 2, term, k ? 0 : -10, -1) == 0);
+    }
+    for (round = 0; round < 3; ++round) {
+        GPROJT_CHECK(gproj_solve(form, round < 2 ? 40 * round : 0, NULL).outcome != GPROJ_FAILED);
+        if (round == 0) state = gprojt_save(form, &size);
+        if (round == 2) GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        for (k = 0; k < 2; ++k) {
+            GPROJT_CHECK(gproj_form_get_unknowns(form, at[k], 2, value, NULL) == GPROJ_OK);
+            GPROJT_NEAR(value[0], round == 1 ? 5 : start[k][0], 1e-6);
+            GPROJT_NEAR(value[1], start[k][1], 1e-12);
+        }
+    }
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A start value in range, but not in the form's units: 1e60 is 1e360 mean edges, beyond all numbers. */
+GPROJT_TEST(start_values_beyond_the_units) {
+    static const double none[3] = {0, 0, 0}, far = 1e60;
+    gproj_mesh *mesh = gprojt_cap(4, 1e-300, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group = gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, 1);
+    GPROJT_CHECK(gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, &far, NULL, NULL) >= 0);
+    GPROJT_CHECK(gproj_form_add_unknowns(form, group, GPROJ_UNIT_LENGTH, 1, &far, NULL, NULL) == -1);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_NUMBER && strstr(gproj_form_error(form)->message, "mine"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
@@ -435,6 +494,8 @@ int main(void) {
     GPROJT_RUN(residuals_by_element);
     GPROJT_RUN(wrong_rows_are_refused);
     GPROJT_RUN(unknowns_refused);
+    GPROJT_RUN(groups_have_their_own_unknowns);
+    GPROJT_RUN(start_values_beyond_the_units);
     GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(flat_midspheres_begin_in_their_plane);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
