@@ -18578,7 +18578,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     /* 1. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
     variant = f.options.variant;
     for (tries = 0; !code && !good && tries < 3 * GPROJI_FILL_TRIES; ++tries) {
-        if (variant >= INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
+        if (variant > INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
         f.options.variant = variant + tries % GPROJI_FILL_TRIES;
         code = gproji_try_filling(&f, most[tries / GPROJI_FILL_TRIES], &good);
     }

@@ -435,6 +435,19 @@ GPROJT_TEST(sides_are_divided_evenly) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Edges longer than all of a lens: 4 quad edges nevertheless, the fewest that there can be. */
+GPROJT_TEST(a_lens_has_four_edges) {
+    gprojt_curve c = gprojt_rose(2, 6, 0.7);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.options.edge_length = 100;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+    GPROJT_CHECK(info.boundary_count == 4 && info.side_count == 2);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Rings run along the whole boundary, also past corners and where the inside is cut. */
 GPROJT_TEST(rings) {
     static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
@@ -500,10 +513,16 @@ GPROJT_TEST(variants_differ) {
     }
     GPROJT_CHECK(irregular[0] == 1 && irregular[1] >= irregular[0] && irregular[2] >= irregular[1]);
     GPROJT_CHECK(faces[0] != faces[1] || irregular[0] != irregular[1]);
-    c.options.variant = 1000000; /* the last one that there is */
-    mesh = gprojt_fill(&c, NULL, NULL);
-    GPROJT_CHECK(mesh != NULL);
-    gproj_mesh_destroy(mesh);
+    for (i = 0; i < 3; ++i) { /* the last one that there is, also where the next number would not be one */
+        static const int32_t beyond[3] = {1000000, INT32_MAX - 2, INT32_MAX};
+        gproj_fill_info info;
+        c.options.variant = beyond[i];
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        if (i == 0) faces[0] = mesh->face_count, irregular[0] = info.irregular_count;
+        GPROJT_CHECK(mesh->face_count == faces[0] && info.irregular_count == irregular[0]);
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 /* More corners than a patch has: the polygon is cut, though none of them is reflex. */
@@ -684,6 +703,9 @@ GPROJT_TEST(refusals_of_curves) {
         gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 0, "after point 0 and after point 2"));
     c = gprojt_polygon(3, line);
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "encloses no area"));
+    c = gprojt_rose(4, 3, 0); /* an area that no double could hold the square of */
+    for (i = 0; i < 3 * c.count; ++i) c.point[i] *= 1e-77;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "encloses no area"));
     c = gprojt_polygon(6, deep); /* the top comes down below where the bottom's one edge is */
     memcpy(c.corner, deep_corner, sizeof deep_corner), memcpy(c.edges, deep_edges, sizeof deep_edges);
     c.corner_count = 4, c.marked = c.given = true;
@@ -736,12 +758,18 @@ GPROJT_TEST(refusals_of_options) {
     c = good, c.marked = false, c.options.corner_count = 3;
     GPROJT_CHECK(
         gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "3 corners in an array that is NULL"));
+    c.options.corner_count = -1;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-1 corners; give at least 2"));
     c = good, c.options.variant = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "variant"));
     c = good, c.options.rings = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-1 rings"));
+    c.options.rings = 1025;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "1025 rings; give 0 to 1024"));
     c = good, c.options.edge_length = -1;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "edge length is -1"));
+    c.options.edge_length = INFINITY;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "edge length is inf"));
     c.options.edge_length = 1e-9;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, 3, "use longer edges"));
     c = good;
@@ -749,11 +777,15 @@ GPROJT_TEST(refusals_of_options) {
     for (i = 0; i < 4; ++i) c.edges[i] = 3;
     c.edges[1] = 0;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "side 1 is to have 0 edges"));
+    c.edges[1] = INT32_MAX; /* and 3 before, whose sum is no int32_t */
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_SIZE, GPROJ_PLACE_VERTEX, 3, "up to side 1 have more than 16384"));
     c.edges[1] = 2;
     GPROJT_CHECK(
         gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, 3, "give side 1 3 edges instead of 2"));
     c.options.side_count = 3;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "but the curve has 4"));
+    c = good, c.options.side_count = 4;
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "4 sides by a NULL array"));
     c = gprojt_rose(2, 6, 0.7);
     c.edges[0] = c.edges[1] = 1;
     c.given = true;
@@ -877,6 +909,7 @@ int main(void) {
     GPROJT_RUN(corners_that_are_flat);
     GPROJT_RUN(points_of_the_curve_are_kept);
     GPROJT_RUN(sides_are_divided_evenly);
+    GPROJT_RUN(a_lens_has_four_edges);
     GPROJT_RUN(rings);
     GPROJT_RUN(single_quads);
     GPROJT_RUN(variants_differ);
