@@ -378,16 +378,21 @@ GPROJT_TEST(curves_without_corners) {
 }
 
 /* Half a circle, with corners marked on the arc: these get two faces, those at the ends of the diameter one. */
-GPROJT_TEST(corners_that_are_flat) {
+static gprojt_curve gprojt_half_disc(void) {
     gprojt_curve c;
-    gproj_fill_info info;
-    gproj_mesh *mesh;
     int32_t i;
     memset(&c, 0, sizeof c);
     for (i = 0; i < 91; ++i) gprojt_add_point(&c, cos(3.141592653589793 * i / 90), sin(3.141592653589793 * i / 90), 0);
     for (i = 0; i < 4; ++i) c.corner[c.corner_count++] = 30 * i;
-    c.edges[0] = c.edges[2] = 6, c.edges[1] = 8, c.edges[3] = 10;
     c.marked = c.given = true;
+    return c;
+}
+
+GPROJT_TEST(corners_that_are_flat) {
+    gprojt_curve c = gprojt_half_disc();
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.edges[0] = c.edges[2] = 6, c.edges[1] = 8, c.edges[3] = 10;
     mesh = gprojt_fill(&c, &info, NULL);
     GPROJT_REQUIRE(mesh != NULL);
     GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
@@ -883,6 +888,7 @@ static bool gprojt_fill_with(const gproj_host *host, void *user) {
 
 GPROJT_TEST(every_allocation_fails_once) {
     static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
+    static const double stairs[] = {0, 0, 6, 0, 6, 1, 5, 1, 5, 2, 4, 2, 4, 3, 3, 3, 3, 4, 2, 4, 2, 5, 1, 5, 1, 6, 0, 6};
     gprojt_curve c = gprojt_polygon(6, L);
     c.options.edge_length = 1.5;
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
@@ -895,6 +901,18 @@ GPROJT_TEST(every_allocation_fails_once) {
     c = gprojt_rose(3, 4, 0.1);
     c.edges[0] = 4, c.edges[1] = 2, c.edges[2] = 2;
     c.given = true;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_polygon(14, stairs); /* many corners, sides and cuts */
+    c.options.edge_length = 1.3;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_polygon(6, L);
+    c.options.edge_length = 1.5, c.options.rings = 2;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_half_disc(); /* a strip over flat corners */
+    c.edges[0] = c.edges[1] = 4, c.edges[2] = 5, c.edges[3] = 3;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c = gprojt_rose(12, 2, 0); /* a circle whose corners are found */
+    c.marked = false;
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
 }
 
