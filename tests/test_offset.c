@@ -282,6 +282,59 @@ GPROJT_TEST(conicality_refusals_and_weight_0) {
     free(end);
 }
 
+/* Asked for twice there are two groups of rows, but one axis per vertex. */
+GPROJT_TEST(conicality_twice) {
+    gproj_mesh *mesh = gprojt_moulding(5, 4, 0.1, 5);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group[2], variables;
+    gproj_add_planarity(form, 1);
+    group[0] = gproj_add_conicality(form, 1);
+    variables = gproj_system_variable_count(gproj_form_system(form));
+    group[1] = gproj_add_conicality(form, 0.5);
+    GPROJT_CHECK(group[0] >= 0 && group[1] > group[0]);
+    GPROJT_CHECK(gproj_form_group_info(form, group[0]).rows == gproj_form_group_info(form, group[1]).rows);
+    GPROJT_CHECK(gproj_system_variable_count(gproj_form_system(form)) == variables);
+    GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED && gprojt_angle_balance(mesh) < 1e-11);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* At a vertex of the boundary with four faces, too: four quads around vertex 0, over half a turn. Their normals are on a
+   circle then, so in a plane. */
+GPROJT_TEST(cones_at_the_boundary) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    double n[4][3], d[3][3], across[3];
+    int32_t group, k, f;
+    memset(&soup, 0, sizeof soup);
+    gprojt_add_vertex(&soup, 0, 0, 1);
+    for (k = 0; k < 9; ++k) { /* ends of edges at vertex 0, and corners between them */
+        double u = 3.141592653589793 * k / 8, r = k % 2 ? 1.5 : 1;
+        gprojt_add_vertex(&soup, r * cos(u), r * sin(u), k % 2 ? 0.2 : 0.5 + 0.03 * k);
+    }
+    for (k = 0; k < 4; ++k) gprojt_add_quad(&soup, 0, 2 * k + 1, 2 * k + 2, 2 * k + 3);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    group = gproj_add_conicality(form, 1);
+    GPROJT_CHECK(gproj_form_group_info(form, group).rows == 1 + 3); /* a row for each edge between two faces */
+    GPROJT_CHECK(gproj_system_check_gradients(gproj_form_system(form)) < 1e-7);
+    GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome == GPROJ_CONVERGED);
+    for (f = 0; f < 4; ++f) {
+        double length;
+        gproj_mesh_face_area_vector(mesh, f, n[f]);
+        length = gprojt_length3(n[f]);
+        for (k = 0; k < 3; ++k) n[f][k] /= length;
+    }
+    for (k = 0; k < 3; ++k) gprojt_sub3(n[k + 1], n[0], d[k]);
+    gprojt_cross3(d[0], d[1], across);
+    GPROJT_CHECK(gprojt_length3(across) > 0.01);
+    GPROJT_NEAR(gprojt_dot3(across, d[2]), 0, 1e-11);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- offsets -- */
 
 /* The largest sine of the angle between an edge and its offset, times the offset's length. */
@@ -597,6 +650,25 @@ GPROJT_TEST(vertex_offsets_do_not_follow_noise) {
     }
 }
 
+/* The direction in which a skew quad's edges stay parallel is across its normal: all vertices go to the normal's side all
+   the same. */
+GPROJT_TEST(vertex_offsets_of_skew_quads) {
+    static const int32_t degree = 4, corner[] = {0, 1, 2, 3};
+    int32_t i, v;
+    for (i = 1; i < 5; ++i) {
+        double h = 0.2 * i, p[] = {0, 0, 0, 1, 0, 0.2 * i, 1, 1, 0, 0, 1, 0.2 * i};
+        gproj_mesh *mesh = gproj_mesh_create(4, p, 1, &degree, corner, NULL, NULL);
+        gproj_mesh *offset = gproj_mesh_vertex_offset(mesh, h, NULL, NULL);
+        GPROJT_REQUIRE(offset);
+        for (v = 0; v < 4; ++v) {
+            GPROJT_CHECK(offset->position[3 * v + 2] > p[3 * v + 2] + 0.1 * h);
+            GPROJT_NEAR(gprojt_far(offset->position + 3 * v, p + 3 * v), h, 1e-14);
+        }
+        gproj_mesh_destroy(offset);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 GPROJT_TEST(offsets_scale_with_the_mesh) {
     gproj_mesh *mesh = gprojt_moulding(8, 6, 0.1, 4), *large, *a, *b;
     int32_t i, k;
@@ -640,6 +712,43 @@ GPROJT_TEST(offsets_are_measured) {
     GPROJT_CHECK(m.parallel_max < 0.2);
     gproj_mesh_destroy(moved);
     gproj_mesh_destroy(mesh);
+}
+
+/* A vertex without faces, wherever it is, has no distance. */
+GPROJT_TEST(offsets_of_stray_vertices_are_not_measured) {
+    gprojt_soup soup = gprojt_quad_grid(3, 3);
+    gproj_offset_measures m;
+    gproj_mesh *mesh, *moved;
+    int32_t stray = gprojt_add_vertex(&soup, 7, 7, 7), i;
+    mesh = gprojt_mesh_of(soup);
+    moved = gproj_mesh_copy(mesh, NULL, NULL);
+    for (i = 0; i < mesh->vertex_count; ++i) moved->position[3 * i + 2] += i == stray ? 100 : 0.25;
+    m = gproj_measure_offset(mesh, moved);
+    GPROJT_NEAR(m.vertex_distance_min, 0.25, 1e-15);
+    GPROJT_NEAR(m.vertex_distance_max, 0.25, 1e-15);
+    gproj_mesh_destroy(moved);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Meshes of equally many vertices and half-edges, but of other edges, or with a face in the place of a hole, are no
+   offsets of each other. */
+GPROJT_TEST(meshes_of_other_faces_are_no_offsets) {
+    static const double p[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 1};
+    static const int32_t degree[] = {3, 3, 3, 3, 4}, corner[][12] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}};
+    static const int32_t roof[] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 3, 2, 1, 0};
+    int i;
+    for (i = 0; i < 2; ++i) { /* the other diagonal of a quad; a pyramid with and without its base */
+        gproj_mesh *a = i ? gproj_mesh_create(5, p, 4, degree, roof, NULL, NULL)
+                          : gproj_mesh_create(4, p, 2, degree, corner[0], NULL, NULL);
+        gproj_mesh *b = i ? gproj_mesh_create(5, p, 5, degree, roof, NULL, NULL)
+                          : gproj_mesh_create(4, p, 2, degree, corner[1], NULL, NULL);
+        gproj_mesh *other = gproj_mesh_create(5, p, 2, degree, corner[0], NULL, NULL);
+        GPROJT_REQUIRE(a && b && other && a->vertex_count == b->vertex_count && a->edge_count == b->edge_count);
+        GPROJT_CHECK(!gproj_mesh_support(a, b, NULL, NULL) && !gproj_mesh_support(a, other, NULL, NULL));
+        GPROJT_CHECK(gproj_measure_offset(a, b).parallel_max == HUGE_VAL);
+        GPROJT_CHECK(gproj_measure_offset(a, a).parallel_max < 1e-15);
+        gproj_mesh_destroy(a), gproj_mesh_destroy(b), gproj_mesh_destroy(other);
+    }
 }
 
 GPROJT_TEST(supports) {
@@ -715,6 +824,8 @@ int main(void) {
     GPROJT_RUN(conicality_is_measured);
     GPROJT_RUN(conicality_begins_anew);
     GPROJT_RUN(conicality_refusals_and_weight_0);
+    GPROJT_RUN(conicality_twice);
+    GPROJT_RUN(cones_at_the_boundary);
     GPROJT_RUN(face_offsets_of_conical_meshes);
     GPROJT_RUN(vertex_offsets_of_circular_meshes);
     GPROJT_RUN(vertex_offsets_of_inscribed_meshes);
@@ -724,8 +835,11 @@ int main(void) {
     GPROJT_RUN(meshes_without_shape);
     GPROJT_RUN(flat_pieces);
     GPROJT_RUN(vertex_offsets_do_not_follow_noise);
+    GPROJT_RUN(vertex_offsets_of_skew_quads);
     GPROJT_RUN(offsets_scale_with_the_mesh);
     GPROJT_RUN(offsets_are_measured);
+    GPROJT_RUN(offsets_of_stray_vertices_are_not_measured);
+    GPROJT_RUN(meshes_of_other_faces_are_no_offsets);
     GPROJT_RUN(supports);
     GPROJT_RUN(refusals);
     GPROJT_RUN(every_allocation_fails_once);

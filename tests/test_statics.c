@@ -567,6 +567,33 @@ GPROJT_TEST(stresses_stay_within_bounds) {
     }
 }
 
+/* A bound of one edge is one row, and holds. */
+GPROJT_TEST(stress_bounds_of_some_edges) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 6, 10, 3);
+    gproj_loads loads = gprojt_no_loads();
+    double *kept = gprojt_keep(mesh), *w = gprojt_numbers(mesh->edge_count), most = 0, section = 0.25;
+    gproj_form *form;
+    int32_t e, edge = -1, group;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    gproj_get_forces(form, w, NULL);
+    for (e = 0; e < mesh->edge_count; ++e)
+        if (w[e] * gprojt_edge_length(mesh, e) > most) most = w[e] * gprojt_edge_length(mesh, e), edge = e;
+    gproj_form_destroy(form);
+    gprojt_put_back(mesh, kept);
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    group = gproj_add_stress_bounds(form, 1, &edge, &section, -INFINITY, 0.9 * most / section, 1);
+    GPROJT_CHECK(gproj_form_group_info(form, group).rows == 1);
+    GPROJT_CHECK(gproj_solve(form, 60, NULL).outcome == GPROJ_CONVERGED);
+    gproj_get_forces(form, w, NULL);
+    GPROJT_CHECK(w[edge] * gprojt_edge_length(mesh, edge) <= 0.9 * most + 1e-9 * most);
+    gprojt_check_balance(form, &loads, 1e-10);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(kept), free(w);
+}
+
 /* The root of the mean squared difference of forces in opposite edges of quads, over the root of their mean square. */
 static double gprojt_force_spread(const gproj_form *form) {
     const gproj_mesh *mesh = gprojt_inside_mesh(form);
@@ -826,6 +853,66 @@ GPROJT_TEST(best_forces_within_active_bounds) {
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(w);
+}
+
+/* A row w >= 0 of the caller's bounds the force in its edge, however it is written; rows that say something else, or of
+   no edge, do not. */
+GPROJT_TEST(bounds_of_ones_own_on_forces) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 4, 10, 3);
+    gproj_loads loads = gprojt_no_loads();
+    double *w = gprojt_numbers(mesh->edge_count), *kept = gprojt_numbers(mesh->edge_count);
+    int32_t e, least = -1, pinned = 0, other = 0, way;
+    gprojt_shake(mesh, 0.5, 3);
+    loads.density = 1;
+    for (way = 0; way < 9; ++way) {
+        gproj_form *form = gprojt_pinned_form(mesh, NULL, &loads);
+        gproj_system *s = gproj_form_system(form);
+        gproj_term term[2];
+        gproj_group group;
+        double constant = way == 5 ? 0.5 : 0;
+        if (way == 0) {
+            GPROJT_CHECK(gproj_find_forces(form, kept, NULL, NULL) == GPROJ_OK);
+            for (e = 0; e < mesh->edge_count; ++e)
+                if (least < 0 || kept[e] < kept[least]) least = e;
+            while (gproj_force_variable(form, pinned) >= 0) ++pinned;
+            while (other == least || gproj_force_variable(form, other) < 0) ++other;
+            GPROJT_REQUIRE(kept[least] < -0.1);
+        }
+        memset(&group, 0, sizeof group);
+        group.name = "own", group.kind = GPROJ_BOUND, group.place = GPROJ_PLACE_EDGE, group.schedule = gproj_keep(1);
+        term[0] = gprojt_term(gproj_force_variable(form, least), -1, way == 8 ? 7 : 1);
+        term[1] = gprojt_term(gproj_force_variable(form, least), -1, 1);
+        if (way == 1) term[0].j = term[0].i;                        /* w^2 >= 0 */
+        if (way == 2) term[0].i = 0;                                /* x >= 0 */
+        if (way == 3) term[1].i = 0;                                /* w + x >= 0 */
+        if (way == 4) term[0].i = gproj_force_variable(form, other); /* of another edge */
+        gproj_system_add_row(s, gproj_system_add_group(s, &group), way == 3 ? 2 : 1, term, constant,
+                             way == 6 ? -1 : way == 7 ? pinned : way == 0 ? mesh->edge_count : least);
+        GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK);
+        if (way == 8) GPROJT_CHECK(w[least] > -1e-9);
+        if (way < 8) GPROJT_CHECK(!memcmp(w, kept, (size_t)mesh->edge_count * sizeof *w));
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+    free(w), free(kept);
+}
+
+/* Without loads nothing is out of balance, and no force is better than none. */
+GPROJT_TEST(no_loads_no_forces) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 4, 10, 3);
+    gproj_loads loads = gprojt_no_loads();
+    double *w = gprojt_numbers(mesh->edge_count), *d = gprojt_numbers(3 * mesh->vertex_count);
+    gproj_form *form = gprojt_pinned_form(mesh, NULL, &loads);
+    int32_t i;
+    gproj_add_compression(form, 0, NULL, 1);
+    for (i = 0; i < mesh->edge_count; ++i) w[i] = 1;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) d[i] = 1;
+    GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK && gproj_find_imbalance(form, d, NULL) == GPROJ_OK);
+    for (i = 0; i < mesh->edge_count; ++i) GPROJT_CHECK(w[i] == 0);
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) GPROJT_CHECK(d[i] == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w), free(d);
 }
 
 /* What the force density method finds carries its loads without rest; a flat plate carries nothing. */
@@ -1183,6 +1270,24 @@ GPROJT_TEST(forces_of_any_size_are_set) {
         gproj_mesh_destroy(mesh);
         free(w);
     }
+}
+
+/* Beside loads whose squares overflow, too. */
+GPROJT_TEST(forces_are_set_beside_huge_loads) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 4, 10, 3);
+    double *w = gprojt_numbers(mesh->edge_count);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    int32_t e;
+    loads.density = 1e300;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 3 + e;
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gproj_get_forces(form, w, NULL) == GPROJ_OK);
+    for (e = 0; e < mesh->edge_count; ++e)
+        if (gprojt_inside_force(form, e) >= 0) GPROJT_NEAR(w[e], 3 + e, 1e-12 * (3 + e));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w);
 }
 
 /* -- what cannot be -- */
@@ -1863,12 +1968,15 @@ int main(void) {
     GPROJT_RUN(tents);
     GPROJT_RUN(tripods);
     GPROJT_RUN(stresses_stay_within_bounds);
+    GPROJT_RUN(stress_bounds_of_some_edges);
     GPROJT_RUN(fair_forces);
     GPROJT_RUN(supports_of_isolated_vertices);
     GPROJT_RUN(rollers_take_nothing_along_their_slides);
     GPROJT_RUN(units_do_not_matter);
     GPROJT_RUN(best_forces);
     GPROJT_RUN(best_forces_within_active_bounds);
+    GPROJT_RUN(bounds_of_ones_own_on_forces);
+    GPROJT_RUN(no_loads_no_forces);
     GPROJT_RUN(funicular_shapes_and_plates);
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_are_kept_and_set);
@@ -1878,6 +1986,7 @@ int main(void) {
     GPROJT_RUN(guidance_of_forces_fades);
     GPROJT_RUN(rough_tolerances_are_met);
     GPROJT_RUN(forces_of_any_size_are_set);
+    GPROJT_RUN(forces_are_set_beside_huge_loads);
     GPROJT_RUN(imbalance_is_a_proof);
     GPROJT_RUN(obstacles_are_named);
     GPROJT_RUN(overturned_shapes_are_told);
