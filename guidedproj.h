@@ -7139,7 +7139,7 @@ GPROJI_INTERNAL double gproji_squares_slack(const gproji_squares *s, int32_t pai
 }
 
 /* Begins inside the bounds, near the solution without bounds for much damping. Slacks and multipliers are scaled as if
-   columns of A had length 1. False: there is no inside, or no factor. */
+   columns of A had length 1. False: no factor. */
 GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
     gproji_interior *in = &s->interior;
     double violation = 0, size = 0, force = 0, shift;
@@ -7158,14 +7158,13 @@ GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
         size = gproji_fmax(size, gproji_fmin(fabs(slack), 1e3 * force));
     }
     shift = gproji_fmax(1.5 * violation + 1e-3 * size, 1e-3 * force);
-    if (!(shift > 0) || !gproji_is_finite(shift)) return false;
-    /* One shift for all variables, so that equal forces stay equal; between two bounds at most a quarter of the way. */
+    /* One shift for all variables, so that equal forces stay equal; between two bounds at most half of the way. */
     for (j = 0; j < s->columns; ++j) {
         bool below = s->lower[j] > -GPROJI_SQUARES_NONE, above = s->upper[j] < GPROJI_SQUARES_NONE;
         double margin = shift / sqrt(s->diagonal[j]);
         if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
         if (below && above) {
-            margin = gproji_fmin(margin, 0.25 * (s->upper[j] - s->lower[j]));
+            margin = gproji_fmin(margin, 0.5 * (s->upper[j] - s->lower[j]));
             in->x[j] = gproji_fmax(gproji_fmin(in->x[j], s->upper[j] - margin), s->lower[j] + margin);
         } else if (below) {
             in->x[j] += margin;
@@ -7174,9 +7173,10 @@ GPROJI_INTERNAL bool gproji_squares_interior(gproji_squares *s) {
         }
     }
     for (c = 0; c < in->pairs; ++c) {
-        in->slack[c] = gproji_squares_slack(s, c);
-        in->dual[c] = 0.1 * force * sqrt(s->diagonal[in->variable[c]]);
-        if (!(in->slack[c] > 0)) return false; /* no number lies between the bounds */
+        double root = sqrt(s->diagonal[in->variable[c]]);
+        /* Neighbouring bounds get some slack: polishing is exact. No product s z is far below the others. */
+        in->slack[c] = gproji_fmax(gproji_squares_slack(s, c), 1e-10 * force / root);
+        in->dual[c] = 0.1 * force * gproji_fmax(root, 0.1 * shift / in->slack[c]);
     }
     return true;
 }
