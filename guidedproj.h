@@ -23025,7 +23025,7 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
     double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
     size_t length = strlen(result->message);
     int32_t f, face = -1, count = 0;
-    for (f = 0; form->axis && unit > 0 && f < mesh->face_count; ++f) {
+    for (f = 0; unit > 0 && f < mesh->face_count; ++f) {
         double off;
         if (form->axis[f] < 0) continue;
         gproji_face_plane(mesh, mesh->position, f, mean, normal);
@@ -23045,7 +23045,7 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
     double worst = 1e-6;
     size_t length = strlen(result->message);
     int32_t v, vertex = -1, count = 0;
-    for (v = 0; form->cone && v < form->mesh->vertex_count; ++v) {
+    for (v = 0; v < form->mesh->vertex_count; ++v) {
         double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
         count += off > 1e-6;
         if (off > worst) worst = off, vertex = v;

@@ -1129,6 +1129,45 @@ GPROJT_TEST(planes_that_spread_are_named) {
         }
 }
 
+/* Two quads 0 1 2 3 and 3 2 4 5, of whose vertices all are held but 3: the plane of 0, 1, 2 has 3 in it, and with 2, 3, 4
+   the second quad, so that 5 may not be held off it. The plane of the second quad meets no third vertex of the first. */
+static gproj_result gprojt_two_quads(const double fourth[3], const double fifth[3]) {
+    static const int32_t corner[2][4] = {{0, 1, 2, 3}, {3, 2, 4, 5}}, held[5] = {0, 1, 2, 4, 5};
+    static const double first[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0.02};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_result result;
+    int32_t k;
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 4; ++k) gprojt_add_vertex(&soup, first[3 * k], first[3 * k + 1], first[3 * k + 2]);
+    gprojt_add_vertex(&soup, fourth[0], fourth[1], fourth[2]);
+    gprojt_add_vertex(&soup, fifth[0], fifth[1], fifth[2]);
+    for (k = 0; k < 2; ++k) gprojt_add_face(&soup, 4, corner[k]);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 5, held, 1);
+    result = gproj_solve(form, 0, NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return result;
+}
+
+/* How far off is told; not what is off by little, nor planes that would have to spread over three vertices in a line. */
+GPROJT_TEST(planes_that_meet_one_vertex) {
+    static const double beside[3] = {1.2, 2, 0}, along[3] = {2, 1, 0};
+    static const double off[4][3] = {{0, 2, 0.25}, {0, 2, 1e-4}, {0, 2, 0}, {1, 2, 0.25}};
+    int k;
+    for (k = 0; k < 4; ++k) {
+        gproj_result result = gprojt_two_quads(k < 3 ? beside : along, off[k]);
+        GPROJT_CHECK((strstr(result.message, "plane from face 0 on, but vertex 5 is held 0.2") != NULL) == (k == 0));
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK(strstr(result.message, "and others likewise") == NULL);
+        GPROJT_CHECK(k == 0 || strstr(result.message, "share one plane") == NULL);
+    }
+}
+
 /* Equilibrium with the boundary as supports, or all vertices. */
 static void gprojt_add_supported(gproj_form *form, const gproj_mesh *mesh, const gproj_loads *loads, bool all) {
     gproj_supports supports;
@@ -1168,6 +1207,79 @@ GPROJT_TEST(planes_without_carriers_are_named) {
     }
 }
 
+/* A ring whose boundaries glide, all the way round: if they are in one plane, the vertices between them are, too. Half of the
+   ring is one face wide, and so gives a plane to begin with; the other half is two wide. */
+GPROJT_TEST(rings_that_glide_in_a_plane) {
+    int raised;
+    for (raised = 0; raised < 2; ++raised) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_supports supports;
+        gproj_loads loads;
+        gproj_result result;
+        int32_t outer[24], k;
+        memset(&soup, 0, sizeof soup);
+        memset(&loads, 0, sizeof loads);
+        memset(&supports, 0, sizeof supports);
+        for (k = 0; k < 59; ++k) { /* outer ones from 0 on, inner ones from 24, those between from 48 */
+            double u = (k < 48 ? k : k + 13) % 24 * acos(-1.0) / 12, r = k < 24 ? 4 : k < 48 ? 3 : 3.5;
+            gprojt_add_vertex(&soup, r * cos(u), r * sin(u), k < 24 ? 0 : k < 48 ? raised : 0.5 * raised);
+        }
+        for (k = 0; k < 24; ++k) {
+            int32_t next = (k + 1) % 24, a = k > 12 ? 35 + k : 24 + k, b = k > 11 && k < 23 ? 36 + k : 24 + next;
+            outer[k] = k;
+            gprojt_add_quad(&soup, k, next, b, a);
+            if (k < 12) continue;
+            if (k == 12) gprojt_add_triangle(&soup, a, b, 24 + next);
+            if (k == 23) gprojt_add_triangle(&soup, a, b, 24 + k);
+            if (k > 12 && k < 23) gprojt_add_quad(&soup, a, b, 24 + next, 24 + k);
+        }
+        mesh = gprojt_mesh_of(soup);
+        loads.snow = 1, supports.count = 24, supports.vertex = outer;
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_gliding_boundary(form, 1);
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        result = gproj_solve(form, 1, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && mesh->loop_count == 2);
+        GPROJT_CHECK((strstr(result.message, "from face 12 on, in which vertex 48 cannot carry") != NULL) == !raised);
+        GPROJT_CHECK(!strstr(result.message, " is held "));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* The vertex that is named has a load out of the plane, and no support: of nine inner ones only the last. */
+GPROJT_TEST(carriers_in_a_plane_are_not_named) {
+    static const int32_t inner[9] = {6, 7, 8, 11, 12, 13, 16, 17, 18};
+    gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double point_load[75];
+    int32_t support[25], v;
+    gproj_supports supports;
+    gproj_loads loads;
+    gproj_result result;
+    memset(&loads, 0, sizeof loads);
+    memset(&supports, 0, sizeof supports);
+    memset(point_load, 0, sizeof point_load);
+    for (v = 0; v < 25; ++v)
+        if (gproj_mesh_is_boundary_vertex(mesh, v)) support[supports.count++] = v;
+    for (v = 0; v < 9; ++v) { /* in turn: loads in the plane, none, and loads across it on supports */
+        if (v < 8 && v % 3 == 2) support[supports.count++] = inner[v];
+        point_load[3 * inner[v] + (v % 3 ? 2 : 0)] = v < 8 && v % 3 == 1 ? 0 : -1;
+    }
+    loads.point_load = point_load, supports.vertex = support;
+    gproj_add_planarity(form, 1);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    result = gproj_solve(form, 40, NULL);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
+    GPROJT_CHECK(strstr(result.message, "in which vertex 18 cannot carry its load") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Without equilibrium the verdict names the vertex that is farthest from where it is held, in whatever order the groups
    were added. */
 GPROJT_TEST(the_farthest_holds_back_most) {
@@ -1191,6 +1303,11 @@ GPROJT_TEST(the_farthest_holds_back_most) {
             gproj_add_targets(form, 1, &vertex, place, 1);
         }
         gproj_add_fixed(form, 0, NULL, 1);
+        {
+            static const int32_t far = 0;
+            static const double away[3] = {0, 0, 9};
+            gproj_add_targets(form, 1, &far, away, 0); /* what has no weight does not hold back */
+        }
         result = gproj_solve(form, 60, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
         GPROJT_CHECK(strstr(result.message, "vertex 12 holds back most ('") != NULL);
@@ -1294,6 +1411,100 @@ GPROJT_TEST(held_corners_are_counted) {
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && !strstr(result.message, "cannot become flat"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+}
+
+/* Faces with very many corners are looked at as well: the first 64 of those that are held make a plane, others may be off
+   it. */
+GPROJT_TEST(many_held_corners) {
+    int k;
+    for (k = 0; k < 3; ++k) { /* bent early, bent late, flat beside a row that cannot hold */
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        int32_t face[80], v;
+        memset(&soup, 0, sizeof soup);
+        for (v = 0; v < 80; ++v) {
+            double bend = (k == 0 && v == 9) || (k == 1 && v == 75) ? 0.5 : 0;
+            face[v] = gprojt_add_vertex(&soup, 12 * cos(v * acos(-1.0) / 40), 12 * sin(v * acos(-1.0) / 40), bend);
+        }
+        gprojt_add_face(&soup, 80, face);
+        gprojt_add_vertex(&soup, 20, 0, 0);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, 80, NULL, 1);
+        if (k == 2) gproj_add_lengths(form, 1, NULL, mesh->position, 1); /* of 12 instead of 1 */
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
+        GPROJT_CHECK((strstr(result.message, "face 0 cannot become flat, because 64 of its") != NULL) == (k == 0));
+        GPROJT_CHECK((strstr(result.message, "face 0 on, but vertex 75 is held") != NULL) == (k == 1));
+        GPROJT_CHECK((strstr(result.message, "share one plane") != NULL) == (k == 1));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Rows of the caller's hold a coordinate if they prescribe it: not by its square, nor without a coefficient or weight, and
+   not rows for the caller's unknowns. */
+GPROJT_TEST(rows_that_hold) {
+    int k;
+    for (k = 0; k < 6; ++k) {
+        gproj_mesh *mesh = gprojt_graph(1, gprojt_saddle); /* one quad, bent; 3 vertices are fixed */
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_system *s = gproj_form_system(form);
+        gproj_result result;
+        int32_t own, c, unknown;
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, 3, NULL, 1);
+        unknown = gproj_system_add_variables(s, 3, 1, NULL);
+        own = gprojt_add_group(s, "own", GPROJ_CONSTRAINT, k == 4 ? 0 : 1);
+        for (c = 0; c < 3; ++c) {
+            int32_t at = k == 1 ? unknown + c : 3 * 3 + c;
+            double x = gproj_system_values(s)[at];
+            gproj_term term = gprojt_term(at, k == 2 ? at : -1, k == 3 ? 0 : k == 5 ? -2 : 1);
+            int32_t row = gproj_system_add_row(s, own, 1, &term, k == 5 ? 2 * x : k == 3 ? 0 : k == 2 ? -x * x : -x, 3);
+            GPROJT_CHECK(row == c);
+        }
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "because 4 of its vertices are held") != NULL) == (k == 0 || k == 5));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* All kinds of damage at many places: the sentence is whole, and leaves out what it has no room for. */
+GPROJT_TEST(the_longest_verdict) {
+    static const double to[5][6] = {{1.3, 0, 0.7, 1.3, 1, 0.7}, {3, 0.7, 0, 3, 0.4, 0}, {3, 0.46, 0, 3, 0.54, 0},
+                                    {2.04, 0, 0, 2.04, 1, 0},   {8, 0, 0, 8, 1, 0}};
+    static const char *const kinds[6] = {"faces turned over",  "faces cross themselves", "edges folded",
+                                         "edges collapsed", "faces collapsed", "edges became spikes"};
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_result result;
+    double *place;
+    int32_t i, k;
+    memset(&soup, 0, sizeof soup);
+    for (i = 0; i < 60; ++i) /* rows of three squares, whose last two vertices go elsewhere: see test_measure.c */
+        for (k = 0; k < 8; ++k) gprojt_add_vertex(&soup, 20 * i + k % 4, k / 4, 0);
+    for (i = 0; i < 60; ++i)
+        for (k = 0; k < 3; ++k) gprojt_add_quad(&soup, 8 * i + k, 8 * i + k + 1, 8 * i + k + 5, 8 * i + k + 4);
+    gprojt_add_vertex(&soup, 0, 5, 0); /* free: else that would be the reason, instead of advice */
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    place = gprojt_keep(mesh);
+    for (i = 20; i < 60; ++i)
+        for (k = 0; k < 6; ++k) place[24 * i + 3 * (k < 3 ? 3 : 7) + k % 3] = to[i % 5][k] + (k % 3 ? 0 : 20 * i);
+    gproj_add_targets(form, 8 * 60, NULL, place, 1);
+    result = gproj_solve(form, 5, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total > 40);
+    for (k = 0; k < 6; ++k) GPROJT_CHECK(strstr(result.message, kinds[k]) != NULL);
+    GPROJT_CHECK(result.message[strlen(result.message) - 1] == ')' && strlen(result.message) > 380);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(place);
 }
 
 GPROJT_TEST(gauss_fairness_needs_planarity) {
@@ -2120,6 +2331,25 @@ GPROJT_TEST(spheres_are_no_circles) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+    { /* one face alone, and one without extent */
+        static const double p[12] = {0, 0, 0, 1, 0, 0.3, 1, 1, 0, 0, 1, 0.3};
+        static const int32_t degree = 4, corner[4] = {0, 1, 2, 3};
+        for (i = 0; i < 2; ++i) {
+            gproj_mesh *mesh = gproj_mesh_create(4, p, 1, &degree, corner, NULL, NULL);
+            gproj_form *form;
+            gproj_result result;
+            int32_t k;
+            for (k = 0; i && k < 12; ++k) mesh->position[k] = 0.1;
+            form = gproj_form_create(mesh, NULL);
+            gproj_add_circularity(form, 1);
+            result = gproj_solve(form, 40, NULL);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            GPROJT_CHECK((strstr(result.message, "but 1 face is not planar, so the corners are on spheres only (face 0")
+                          != NULL) == (i == 0));
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+    }
 }
 
 /* -- refusals -- */
@@ -2565,11 +2795,17 @@ int main(void) {
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(planes_that_spread_are_named);
+    GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(planes_without_carriers_are_named);
+    GPROJT_RUN(rings_that_glide_in_a_plane);
+    GPROJT_RUN(carriers_in_a_plane_are_not_named);
     GPROJT_RUN(the_farthest_holds_back_most);
     GPROJT_RUN(refused_targets_name_no_vertex);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
+    GPROJT_RUN(many_held_corners);
+    GPROJT_RUN(rows_that_hold);
+    GPROJT_RUN(the_longest_verdict);
     GPROJT_RUN(gauss_fairness_needs_planarity);
     GPROJT_RUN(reference_draws_near);
     GPROJT_RUN(closeness_limits_the_way);

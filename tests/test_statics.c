@@ -1100,6 +1100,7 @@ GPROJT_TEST(parts_without_support_are_named) {
     gproj_form *form;
     gproj_supports supports;
     gproj_loads loads = gprojt_no_loads();
+    double load[36];
     int32_t part, k, pin = 8;
     memset(&soup, 0, sizeof soup);
     memset(&supports, 0, sizeof supports);
@@ -1117,6 +1118,15 @@ GPROJT_TEST(parts_without_support_are_named) {
     gproj_add_equilibrium(form, &loads, &supports, 1);
     gproj_add_fixed_boundary(form, 1);
     GPROJT_CHECK(strstr(gproj_solve(form, 10, NULL).message, "the part of the mesh with vertex 0 has no support"));
+    gproj_form_destroy(form);
+    /* A part without loads, or with loads that balance, needs none: the third one is named. */
+    memset(load, 0, sizeof load);
+    load[3 * 4] = 1, load[3 * 5] = -1, load[3 * 8 + 2] = -1, load[3 * 11] = 1;
+    loads.density = 0, loads.point_load = load, supports.count = 0;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    GPROJT_CHECK(strstr(gproj_solve(form, 10, NULL).message, "the part of the mesh with vertex 8 has no support"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
@@ -1371,6 +1381,76 @@ GPROJT_TEST(obstacles_are_named) {
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "is to have both signs"));
     result = gprojt_verdict(2, false, 1, false, false);
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "has no support"));
+}
+
+/* What contradicts on one edge: signs, also by rows of the caller's and by bounds of stresses. What has no weight does not,
+   nor bounds that both signs satisfy, nor those of lengths. */
+GPROJT_TEST(contradictions_are_named) {
+    int way;
+    for (way = 0; way < 10; ++way) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_group group;
+        gproj_result result;
+        gproj_term term;
+        const double off = 0;
+        int32_t edge = mesh->edge_count / 2, own, inside = 0;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads); /* a plate, which is fixed, and carries nothing */
+        gproj_add_fixed(form, 0, NULL, 1);
+        while (gproj_force_variable(form, edge) < 0) ++edge;
+        while (gproj_force_variable(form, inside) < 0) ++inside;
+        memset(&group, 0, sizeof group);
+        group.name = "own", group.kind = GPROJ_BOUND, group.place = GPROJ_PLACE_EDGE, group.schedule = gproj_keep(1);
+        term = gprojt_term(gproj_force_variable(form, edge), -1, -1);
+        gproj_add_length_bounds(form, 0, NULL, 0.01, INFINITY, 1);
+        if (way < 9) gproj_add_compression(form, 1, &edge, 1);
+        if (way == 0) gproj_add_tension(form, 1, &edge, 1);
+        if (way == 1) own = gproj_system_add_group(gproj_form_system(form), &group);
+        if (way == 1) gproj_system_add_row(gproj_form_system(form), own, 1, &term, 0, edge);
+        if (way == 2) gproj_add_stress_bounds(form, 1, &edge, NULL, -INFINITY, -1, 1);
+        if (way == 3) gproj_add_stress_bounds(form, 1, &edge, NULL, -INFINITY, -1, 0);
+        if (way == 4) gproj_add_stress_bounds(form, 1, &edge, NULL, -1, 1, 1);
+        if (way == 5) gproj_add_tension(form, 1, &edge, 0);
+        if (way == 6) gproj_set_element_weights(form, gproj_add_tension(form, 1, &edge, 1), 1, &edge, &off);
+        if (way == 7) gproj_add_tension(form, 1, &inside, 1);
+        if (way == 8) gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
+        if (way == 9) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && gproj_form_error(form)->code == GPROJ_OK);
+        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way == 9));
+        if (strstr(result.message, "is to have both signs")) {
+            char words[32];
+            snprintf(words, sizeof words, "; edge %d is to have both", (int)edge);
+            GPROJT_CHECK(strstr(result.message, words) != NULL);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Where equilibrium is not asked for, at vertices whose weight is 0, nothing is out of balance. */
+GPROJT_TEST(vertices_without_weight_carry_nothing) {
+    int on;
+    for (on = 0; on < 2; ++on) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0); /* a plate */
+        gproj_loads loads = gprojt_no_loads();
+        double *weight = gprojt_numbers(mesh->vertex_count);
+        gproj_form *form;
+        gproj_result result;
+        int32_t v;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        gproj_add_fixed(form, 0, NULL, 1);
+        for (v = 0; v < mesh->vertex_count; ++v) weight[v] = on;
+        gproj_set_element_weights(form, 0, 0, NULL, weight);
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !on);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(weight);
+    }
 }
 
 /* A shape that is turned over to stand, or to hang, is told. */
@@ -1890,9 +1970,10 @@ GPROJT_TEST(same_bits_for_all_workers) {
 
 /* Supports that may move, and circular faces: a point satisfies everything, but its loads are nothing. */
 GPROJT_TEST(a_point_is_no_equilibrium) {
-    int wish;
-    for (wish = 0; wish < 2; ++wish) {
+    int wish, each;
+    for (wish = 0, each = 0; each < 2; each += wish, wish = !wish) { /* the density of all edges, or of each */
         gproj_mesh *mesh = gprojt_vault(QUADS, 6, 2, 0.6);
+        double *density = gprojt_numbers(mesh->edge_count);
         int32_t corner[4], count = 0, v;
         gproj_supports supports = {0, NULL, NULL};
         gproj_loads loads = gprojt_no_loads();
@@ -1902,6 +1983,8 @@ GPROJT_TEST(a_point_is_no_equilibrium) {
             if (gproj_form_is_corner(form, v)) corner[count++] = v;
         supports.count = count, supports.vertex = corner;
         loads.density = 1;
+        for (v = mesh->edge_count / 8; v < mesh->edge_count; ++v) density[v] = 1;
+        if (each) loads.edge_density = density;
         gproj_add_equilibrium(form, &loads, &supports, 1);
         if (wish) gproj_add_fairness(form, 0.3);
         if (!wish) gproj_add_fixed_corners(form, 1);
@@ -1912,6 +1995,7 @@ GPROJT_TEST(a_point_is_no_equilibrium) {
         GPROJT_CHECK(wish == (strstr(result.message, "shrunk to a point") != NULL));
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
+        free(density);
     }
 }
 
@@ -1989,6 +2073,8 @@ int main(void) {
     GPROJT_RUN(forces_are_set_beside_huge_loads);
     GPROJT_RUN(imbalance_is_a_proof);
     GPROJT_RUN(obstacles_are_named);
+    GPROJT_RUN(contradictions_are_named);
+    GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
     GPROJT_RUN(planar_faces_and_compression);
     GPROJT_RUN(weights_switch_groups_off_and_on);
