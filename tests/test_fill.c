@@ -530,6 +530,23 @@ GPROJT_TEST(variants_differ) {
     }
 }
 
+/* Six edges around a point are among the patterns of a hexagon, and in no filling. */
+GPROJT_TEST(hexagons_have_no_vertex_of_valence_6) {
+    gprojt_curve c = gprojt_rose(6, 12, 0);
+    int32_t i;
+    for (i = 0; i < 6; ++i) c.edges[i] = 4;
+    c.given = true;
+    for (i = 0; i < 20; ++i) {
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.options.variant = i < 19 ? i : 1000;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* More corners than a patch has: the polygon is cut, though none of them is reflex. */
 GPROJT_TEST(many_convex_corners_are_cut) {
     int32_t corners, i;
@@ -543,6 +560,68 @@ GPROJT_TEST(many_convex_corners_are_cut) {
         GPROJT_REQUIRE(mesh != NULL);
         GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
         GPROJT_CHECK(info.patch_count > 1);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A corner that is marked whose angle is that of a side or sharper, ends that are no corners, tips that nearly touch a cut:
+   curves that are cut seldom well, or cannot be. */
+GPROJT_TEST(awkward_curves) {
+    static const struct {
+        int32_t points, corners, corner[10];
+        bool keeps;
+        double xy[32];
+    } curve[] = {
+        /* the straight way between two tips passes a third one at 1e-9 */
+        {10, 10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, true,
+         {-1, 0, 0, -1, 1, 0, 4, -2, 4, 4, 0.5, 4, 0, 1e-9, -0.5, 4, -4, 4, -4, -2}},
+        /* a tip of 2 degrees, which no cut may halve */
+        {4, 4, {0, 1, 2, 3}, true, {0, 0, 10, -0.2, 9, 0, 10, 0.2}},
+        /* 8 corners, all cuts between which are too sharp */
+        {8, 8, {0, 1, 2, 3, 4, 5, 6, 7}, true,
+         {100, 0, 0, 1, -0.01, 0.7, -0.02, 0.3, -0.02, 0, -0.02, -0.3, -0.01, -0.7, 0, -1}},
+        /* two corners on one side of the cut; on the other one, or none */
+        {8, 2, {0, 6}, false,
+         {0.979, 0.549, 0.351, 1.013, -0.109, 0.657, -1.443, 0.258, -0.721, -0.093, -1.245, -2.055, 0.061, -0.518, 1.265, -0.859}},
+        {15, 4, {3, 6, 7, 10}, false,
+         {1.683, 0.355, 0.546, 0.410, 0.657, 1.456, 0.219, 0.834, -0.131, 0.458, -0.459, 0.642, -0.891, 0.452, -1.100,
+          0.220, -0.446, -0.095, -1.409, -1.848, -0.170, -0.408, 0.115, -0.682, 1.033, -1.737, 0.401, -0.344, 1.835, -0.379}},
+        /* corners that turn back over more than 300 steps */
+        {12, 6, {0, 3, 6, 7, 8, 10}, true,
+         {1.67, 0.12, 0.28, 0.30, 0.22, 1.95, -0.04, 0.47, -1.11, 1.05, -0.75, 0.13, -0.89, -0.12, -1.01, -1.26, -0.24, -0.64,
+          0.42, -1.11, 0.32, -0.29, 1.93, -0.79}},
+    };
+    int32_t i;
+    for (i = 0; i < (int32_t)(sizeof curve / sizeof *curve); ++i) {
+        gprojt_curve c = gprojt_polygon(curve[i].points, curve[i].xy);
+        gproj_fill_info info;
+        gproj_error error;
+        gproj_mesh *mesh;
+        memcpy(c.corner, curve[i].corner, sizeof curve[i].corner);
+        c.corner_count = curve[i].corners, c.marked = true, c.options.keep_points = curve[i].keeps;
+        mesh = gprojt_fill(&c, &info, &error);
+        if (!mesh) printf("    curve %d: %s\n", (int)i, error.message);
+        GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 6));
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Wherever the second corner of a curve with a dent is, also in parts that have no corner. */
+GPROJT_TEST(dents_with_a_corner_anywhere) {
+    int32_t i, k;
+    for (k = 2; k < 60; k += 19) {
+        gprojt_curve c;
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        memset(&c, 0, sizeof c);
+        for (i = 0; i < 60; ++i) {
+            double t = 6.283185307179586 * i / 60, r = 2 * fabs(sin(t / 2)) + 0.2;
+            gprojt_add_point(&c, r * cos(t), r * sin(t), 0);
+        }
+        c.corner[1] = k, c.corner_count = 2, c.marked = true;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 5));
+        GPROJT_CHECK(info.patch_count == 2);
         gproj_mesh_destroy(mesh);
     }
 }
@@ -693,6 +772,7 @@ GPROJT_TEST(refusals_of_curves) {
     static const double deep[] = {0, 0, 2, -2, 4, 0, 4, 2, 2, -1, 0, 2};
     static const int32_t deep_corner[] = {0, 2, 3, 5}, deep_edges[] = {1, 1, 2, 2};
     static const double touch[] = {0, 0, 4, 0, 4, 4, 2, 0, 0, 4}, line[] = {0, 0, 1, 1, 2, 2};
+    static const double thin[] = {0, 0, 10, -3e-6, 4, -5e-7, 10, 3e-6};
     gprojt_curve c = gprojt_polygon(4, eight);
     gproj_fill_info info;
     gproj_error error;
@@ -734,6 +814,11 @@ GPROJT_TEST(refusals_of_curves) {
     mesh = gprojt_fill(&c, &info, NULL);
     GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 5));
     gproj_mesh_destroy(mesh);
+    c = gprojt_polygon(4, thin); /* a millionth as thick as it is long, and bent */
+    for (k = 0; k < 2; ++k) {
+        c.options.variant = k ? INT32_MAX : 0;
+        GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "no filling without a quad"));
+    }
     c.count = 2;
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3"));
     c = gprojt_rose(4, 3, 0);
@@ -931,7 +1016,10 @@ int main(void) {
     GPROJT_RUN(rings);
     GPROJT_RUN(single_quads);
     GPROJT_RUN(variants_differ);
+    GPROJT_RUN(hexagons_have_no_vertex_of_valence_6);
     GPROJT_RUN(many_convex_corners_are_cut);
+    GPROJT_RUN(awkward_curves);
+    GPROJT_RUN(dents_with_a_corner_anywhere);
     GPROJT_RUN(opposite_sides_get_equal_numbers);
     GPROJT_RUN(the_best_change_is_named);
     GPROJT_RUN(anywhere_in_space);
