@@ -17307,8 +17307,12 @@ typedef struct gproji_filling {
 
 GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
                                       int32_t d) {
-    return gproji_ints_add(heap, ints, a) && gproji_ints_add(heap, ints, b) && gproji_ints_add(heap, ints, c) &&
-           gproji_ints_add(heap, ints, d);
+    size_t at = ints->count;
+    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, at + 4, sizeof(int32_t));
+    if (ints->capacity < at + 4) return false;
+    ints->data[at] = a, ints->data[at + 1] = b, ints->data[at + 2] = c, ints->data[at + 3] = d;
+    ints->count += 4;
+    return true;
 }
 
 /* -- patterns: their equations -- */
@@ -17413,8 +17417,8 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
     while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
             int32_t before = (i + n - 1) % n, after = (i + 1) % n; /* differ: two sides have rows >= 0 */
-            if (i == 1 || i == n - 1) continue;
-            if ((before > 0 && rest[before] < 2) || (after > 0 && rest[after] < 2)) continue;
+            if (i == 1 || i == n - 1) continue; /* beside side 0 */
+            if (rest[before] < 2 || rest[after] < 2) continue;
             if (best < 0 || p->strip[i] < p->strip[best]) best = i;
         }
         if (best < 0) return false;
@@ -17677,9 +17681,9 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     /* 1. Points are finite, and no two neighbours coincide. */
     if (f->count < 3 || f->count > GPROJI_VERTICES_MAX || !f->points)
         return gproji_refuse(f->error,
-                             f->points ? "a closed curve of %d points; it needs at least 3"
+                             f->points ? "a closed curve of %d points; it needs at least 3 and at most %d"
                                        : "the points of the curve are NULL",
-                             f->count);
+                             f->count, (int32_t)GPROJI_VERTICES_MAX);
     code = gproji_check_positions(f->count, f->points, GPROJ_PLACE_VERTEX, "point", f->error);
     if (code) return code;
     for (i = 0; i < f->count; ++i) {
@@ -17693,7 +17697,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     if (!f->seen) return gproji_fail_memory(f->error);
     /* 2. The plane orthogonal to the vectorial area: the curve runs counter-clockwise in it. */
     gproji_set3(0, 0, 0, f->normal);
-    for (i = 1; i < f->count; ++i) {
+    for (i = 1;; ++i) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
         extent = gproji_fmax(extent, gproji_dot3(a, a));
         if (i + 1 == f->count) break;
@@ -17977,7 +17981,6 @@ GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int3
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
     int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
     int32_t strip[GPROJI_PATCH_SIDES], least, off, reflex = 0;
-    if (j - i + edges < 4) return HUGE_VAL;
     /* 1. A part that is cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
     for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
     if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
@@ -18289,8 +18292,8 @@ GPROJI_INTERNAL gproj_code gproji_fill_harmonically(gproji_filling *f, int32_t f
     for (i = 0; done && i < 3 * n; ++i)
         if (m.place[i] >= 0) m.value[m.place[i]] = i % 3 == 2 ? -1 : 1;
     /* 2. One solve for all fields. */
-    done = done && gproj_cholesky_factor(m.cholesky, m.value) == GPROJ_FACTORED &&
-           gproj_cholesky_solve(m.cholesky, fields, side, side) == GPROJ_OK;
+    done = done && gproj_cholesky_factor(m.cholesky, m.value) == GPROJ_FACTORED;
+    if (done) gproj_cholesky_solve(m.cholesky, fields, side, side);
     for (i = 0; done && i < unknowns; ++i)
         for (k = 0; k < fields; ++k)
             field[(size_t)(i + fixed) * (size_t)fields + (size_t)k] = side[(size_t)k * (size_t)unknowns + (size_t)i];

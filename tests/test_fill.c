@@ -582,7 +582,8 @@ GPROJT_TEST(awkward_curves) {
          {100, 0, 0, 1, -0.01, 0.7, -0.02, 0.3, -0.02, 0, -0.02, -0.3, -0.01, -0.7, 0, -1}},
         /* two corners on one side of the cut; on the other one, or none */
         {8, 2, {0, 6}, false,
-         {0.979, 0.549, 0.351, 1.013, -0.109, 0.657, -1.443, 0.258, -0.721, -0.093, -1.245, -2.055, 0.061, -0.518, 1.265, -0.859}},
+         {0.979, 0.549, 0.351, 1.013, -0.109, 0.657, -1.443, 0.258, -0.721, -0.093, -1.245, -2.055, 0.061, -0.518, 1.265,
+          -0.859}},
         {15, 4, {3, 6, 7, 10}, false,
          {1.683, 0.355, 0.546, 0.410, 0.657, 1.456, 0.219, 0.834, -0.131, 0.458, -0.459, 0.642, -0.891, 0.452, -1.100,
           0.220, -0.446, -0.095, -1.409, -1.848, -0.170, -0.408, 0.115, -0.682, 1.033, -1.737, 0.401, -0.344, 1.835, -0.379}},
@@ -820,7 +821,7 @@ GPROJT_TEST(refusals_of_curves) {
         GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "no filling without a quad"));
     }
     c.count = 2;
-    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3"));
+    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3 and"));
     c = gprojt_rose(4, 3, 0);
     memcpy(c.point + 15, c.point + 12, 3 * sizeof(double));
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 4, "points 4 and 5"));

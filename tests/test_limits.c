@@ -144,6 +144,24 @@ GPROJT_TEST(edits) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A circle of points: 99 may be vertices. */
+GPROJT_TEST(curves) {
+    gproj_fill_options options;
+    double points[300];
+    gproj_mesh *mesh;
+    int32_t i;
+    for (i = 0; i < 100; ++i)
+        points[3 * i] = cos(0.0628 * i), points[3 * i + 1] = sin(0.0628 * i), points[3 * i + 2] = 0;
+    memset(&options, 0, sizeof options);
+    options.edge_length = 0.7;
+    mesh = gproj_mesh_fill(99, points, &options, NULL, NULL, &gprojt_last);
+    GPROJT_CHECK(mesh && !gprojt_validate_mesh(mesh));
+    gproj_mesh_destroy(mesh);
+    mesh = gproj_mesh_fill(100, points, &options, NULL, NULL, &gprojt_last);
+    GPROJT_CHECK(!mesh && gprojt_last.code == GPROJ_ERROR_ARGUMENT &&
+                 strstr(gprojt_last.message, "a closed curve of 100 points; it needs at least 3 and at most 99"));
+}
+
 GPROJT_TEST(supports) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(3, 3)), *one; /* 24 edges */
     gproj_mesh *support = gproj_mesh_support(mesh, mesh, NULL, &gprojt_last);
@@ -324,6 +342,7 @@ int main(void) {
     GPROJT_RUN(texts);
     GPROJT_RUN(subdivision);
     GPROJT_RUN(edits);
+    GPROJT_RUN(curves);
     GPROJT_RUN(supports);
     GPROJT_RUN(matrices);
     GPROJT_RUN(variables);
