@@ -22194,7 +22194,7 @@ GPROJI_INTERNAL double gproji_bend(const gproji_part *part, const double *x, int
     const gproj_form *form = part->form;
     const int32_t *face = form->mesh->face + 2 * (size_t)edge;
     const double *axis = gproji_corners_of(part)->axis;
-    if (face[0] < 0 || face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1;
+    if (face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1; /* face[0] is always one */
     if (!(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]) > 0)) return 1;
     return gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]);
 }
@@ -22278,7 +22278,7 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
         }
     for (k = 0; bends && k < 3; ++k) gproji_set_term(&term[count++], normal[face] + k, -1, 0);
     if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
-    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, face < 0 ? beside : face);
+    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, face);
     if (row < 0) return -1;
     guard->item[row] = item;
     guard->row[item] = row;
@@ -22330,10 +22330,10 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     return found;
 }
 
-/* The corners that act in this solve; NULL: none do. */
+/* The corners, of which a form has some here, if they act in this solve; NULL: they do not. */
 GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    return part && gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
+    return gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
 }
 
 /* Does the step to x violate the bound of a corner that does not act yet? Marks those that should. */
@@ -22358,7 +22358,7 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
         if (!guard->marked[item]) continue;
         guard->marked[item] = 0;
         row = guard->row[item] < 0 ? gproji_add_corner(part, item) : guard->row[item];
-        if (row < 0 || gproji_corner_acts_now(part, item)) continue;
+        if (row < 0) continue; /* without memory */
         edge = item < guard->bends ? item - guard->edges : (item - guard->bends) / 2;
         gproji_place_row(system, part->group, row, edge < 0 ? sqrt(guard->size[item / 2]) : guard->length[edge], 0);
         woken = true;
@@ -22440,7 +22440,7 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     guard->item = (int32_t *)gproji_part_take(part, guard->items, sizeof *guard->item);
     guard->marked = (uint8_t *)gproji_part_take(part, guard->items, 1);
     if (!gproji_form_ready(form)) return;
-    if (guard->items > 0) memset(guard->row, -1, (size_t)guard->items * sizeof *guard->row);
+    memset(guard->row, -1, (size_t)guard->items * sizeof *guard->row);
     gproji_add_group(part, 0);
 }
 
@@ -23131,7 +23131,7 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     gproj_system *s = form->system;
     int32_t group = gproji_new_group(form, &gproji_smooth_change_rule, 0), e, i, k, *local;
     if (group < 0) return;
-    for (i = 0; i < 3 * mesh->vertex_count && gproji_form_ready(form); ++i) {
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) {
         local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
         if (!local) return;
         *local = i;
@@ -23260,7 +23260,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
             gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
         return false;
     }
-    if (!gproji_form_ready(form) || !gproji_positions_are_finite(form, &form->error)) goto failed;
+    if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form));

@@ -536,6 +536,37 @@ GPROJT_TEST(restorations_stay_near) {
     for (seed = 2; seed <= 8; ++seed) GPROJT_NEAR(gprojt_bend_tower(seed), first, 1e-4);
 }
 
+/* What cannot hold is not restored by any step, however it is damped: the handle goes where it is dragged all the same. */
+GPROJT_TEST(what_cannot_be_restored) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.05);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t v = gprojt_middle(mesh), corner = 0, k;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    double away[3], p[3], residual;
+    memset(&options, 0, sizeof options);
+    memcpy(away, mesh->position, sizeof away), away[2] += 0.5;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 1, &corner, 1);
+    gproj_add_targets(form, 1, &corner, away, 1);
+    GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome != GPROJ_CONVERGED);
+    options.residual_bound = 0.01;
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    residual = gproj_drag_residual(drag);
+    memcpy(p, mesh->position + 3 * v, sizeof p);
+    for (k = 0; k < 3; ++k) {
+        p[2] += 0.1;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK && gproj_drag_get_info(drag).linearisations == k + 2);
+        GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, p) < 1e-9 && gproj_drag_residual(drag) < 1.1 * residual);
+    }
+    GPROJT_CHECK(residual > 0.2);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
 GPROJT_TEST(a_wild_move) {
     static const double far[] = {1e5, 1e20, 1e69};
@@ -704,17 +735,24 @@ GPROJT_TEST(refused) {
     static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {-1, 0};
     static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
     static const double astray[] = {0, 0, 0, 0, NAN, 0}, far[] = {0, 0, -1e71};
-    static const int32_t outside[] = {3, 99}, two[] = {3, 4};
+    static const int32_t outside[] = {3, 99}, before[] = {-3}, two[] = {3, 4};
     gproj_mesh *mesh = gprojt_roof(4, 0);
     gproj_form *form = gproj_form_create(mesh, NULL), *standing;
     gproj_handles handles = gprojt_vertex_handles(2, two);
     gproj_drag_options options;
+    gproj_drag *drag;
     memset(&options, 0, sizeof options);
     gprojt_check_refusal(form, NULL, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
     handles.count = 0;
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
     handles = gprojt_vertex_handles(2, outside);
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_INDEX, "handle 1: there is no vertex 99");
+    handles = gprojt_vertex_handles(1, before);
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_INDEX, "handle 0: there is no vertex -3");
+    handles.vertex = NULL;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
+    handles = gprojt_vertex_handles(INT32_MAX, two); /* so many that their products would overflow */
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
     handles = gprojt_vertex_handles(2, two);
     handles.start = start;
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "the list of handle 1");
@@ -744,11 +782,107 @@ GPROJT_TEST(refused) {
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
     standing = gprojt_design(mesh, GPROJT_STANDING, NULL);
     gprojt_check_refusal(standing, &handles, NULL, GPROJ_ERROR_STATE, "forces have no values");
+    gproj_set_schedule(standing, 1, gproj_keep(0)); /* equilibrium that is not asked for needs none */
+    drag = gproj_drag_begin(standing, &handles, NULL, NULL);
+    GPROJT_CHECK(drag && !strcmp(gproj_form_group_info(standing, 1).name, "equilibrium"));
+    gproj_drag_cancel(drag);
     gproj_form_destroy(standing);
     mesh->position[4] = HUGE_VAL;
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "vertex 1");
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+}
+
+/* Beside a solve that is on no drag begins, and no state is restored, though a callback asks for it. */
+typedef struct gprojt_asker {
+    gproj_form *form;
+    uint8_t *state;
+    size_t size;
+    int32_t vertex, asked;
+} gprojt_asker;
+
+static bool gprojt_ask_in_solve(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    gprojt_asker *asker = (gprojt_asker *)user;
+    gproj_handles handles = gprojt_vertex_handles(1, &asker->vertex);
+    gproj_error error;
+    (void)system, (void)iteration;
+    gprojt_check_refusal(asker->form, &handles, NULL, GPROJ_ERROR_STATE, "a solve or another drag is under way");
+    GPROJT_CHECK(gproj_state_restore(asker->form, asker->state, asker->size, &error) == GPROJ_ERROR_STATE);
+    GPROJT_CHECK(strstr(error.message, "a solve or a drag is under way"));
+    asker->asked++;
+    return true;
+}
+
+GPROJT_TEST(refused_in_a_solve) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    gproj_solve_options options;
+    gprojt_asker asker;
+    memset(&options, 0, sizeof options);
+    asker.form = form, asker.vertex = gprojt_middle(mesh), asker.asked = 0;
+    asker.state = gprojt_save(form, &asker.size);
+    options.on_iteration = gprojt_ask_in_solve, options.user = &asker;
+    GPROJT_CHECK(gproj_solve(form, 40, &options).outcome == GPROJ_CONVERGED && asker.asked > 1);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    free(asker.state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Start values of unknowns that are none when a drag begins: there is no drag, and the mesh stays. */
+static void gprojt_start_badly(void *user, const gproj_mesh *mesh, int32_t first, int32_t count, double *values) {
+    (void)mesh, (void)first, (void)count;
+    if (*(const bool *)user) values[0] = NAN;
+}
+
+GPROJT_TEST(unknowns_without_start) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh), group;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    double one = 1;
+    bool bad = false;
+    group = gproj_add_rows(stage.form, "mine", GPROJ_WISH, GPROJ_PLACE_NONE, 1);
+    gproj_form_add_unknowns(stage.form, group, GPROJ_UNIT_LENGTH, 1, &one, gprojt_start_badly, &bad);
+    gproj_drag_cancel(gprojt_grab(&stage, 1, &v));
+    bad = true;
+    gprojt_check_refusal(stage.form, &handles, NULL, GPROJ_ERROR_NUMBER, "mine: the start value of unknown");
+    GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start) && gproj_form_error(stage.form)->code == GPROJ_ERROR_NUMBER);
+    gprojt_clear_stage(&stage);
+}
+
+/* A refresh of the caller's that fails during a move: this move is undone, the error told, and nothing moves any more. */
+static void gprojt_refresh_badly(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
+    (void)group, (void)progress;
+    if (*(const bool *)user) gproj_system_add_variables(system, 1, 1, NULL);
+}
+
+GPROJT_TEST(refreshes_that_fail_in_a_move) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh);
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_group group;
+    gproj_drag *drag;
+    double *kept, p[3];
+    bool bad = false;
+    memset(&options, 0, sizeof options);
+    memset(&group, 0, sizeof group);
+    group.name = "mine", group.schedule = gproj_keep(1), group.refresh = gprojt_refresh_badly, group.refresh_user = &bad;
+    gprojt_add_linear(gproj_form_system(stage.form), gproj_system_add_group(gproj_form_system(stage.form), &group), 0, 0, 0,
+                      -1);
+    options.residual_bound = 1e-9;
+    drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    gprojt_pull(&stage, drag, v, 0.1 * stage.edge);
+    kept = gprojt_keep(stage.mesh);
+    bad = true;
+    memcpy(p, stage.start + 3 * v, sizeof p);
+    p[2] += 0.3;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_STATE && gproj_drag_error(drag)->code == GPROJ_ERROR_STATE);
+    GPROJT_CHECK(gprojt_unmoved(stage.mesh, kept) && gproj_drag_get_info(drag).freedom == 0);
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_FAILED && gprojt_unmoved(stage.mesh, stage.start));
+    free(kept);
+    gprojt_clear_stage(&stage);
 }
 
 GPROJT_TEST(misused) {
@@ -945,8 +1079,43 @@ GPROJT_TEST(handles_with_reach) {
                  gproj_find_reach(form, -1, 3, list, weight) == 0);
     GPROJT_CHECK(gproj_find_reach(form, middle, 3, NULL, weight) == 0);
     GPROJT_CHECK(gproj_find_reach(NULL, middle, 3, list, weight) == 0);
+    GPROJT_CHECK(gproj_find_reach(form, middle, 3, list, NULL) == 0);
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+    { /* a vertex without faces reaches itself */
+        gprojt_soup soup = gprojt_quad_grid(2, 2);
+        v = gprojt_add_vertex(&soup, 0.1, 0.1, 0);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gproj_find_reach(form, v, 9, list, weight) == 1 && list[0] == v && weight[0] == 1);
+        GPROJT_CHECK(gproj_find_reach(form, 0, 9, list, weight) == 9);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Weights that add up to nothing have no mean: such a handle begins at the origin, and its vertices go apart. */
+GPROJT_TEST(handles_of_differences) {
+    static const int64_t start[2] = {0, 2};
+    static const double weight[2] = {1, -1}, to[3] = {0.1, 0, 0.25};
+    gproj_mesh *mesh = gprojt_roof(4, 0.05);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t pair[2] = {3, 17}, v, c;
+    double *before = gprojt_keep(mesh);
+    gproj_handles handles;
+    gproj_drag *drag;
+    memset(&handles, 0, sizeof handles);
+    handles.count = 1, handles.start = start, handles.vertex = pair, handles.weight = weight;
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    GPROJT_REQUIRE(drag && gproj_drag_move(drag, to) == GPROJ_OK);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        for (c = 0; c < 3; ++c)
+            GPROJT_NEAR(mesh->position[3 * v + c] - before[3 * v + c], v == 3 ? to[c] : v == 17 ? -to[c] : 0, 1e-12);
+    gproj_drag_cancel(drag);
+    GPROJT_CHECK(gprojt_unmoved(mesh, before));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before);
 }
 
 /* -- failing allocations -- */
@@ -1018,18 +1187,23 @@ int main(void) {
     GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
     GPROJT_RUN(restorations_stay_near);
+    GPROJT_RUN(what_cannot_be_restored);
     GPROJT_RUN(a_wild_move);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
     GPROJT_RUN(cancelled_after_additions);
     GPROJT_RUN(lists_that_begin_later);
     GPROJT_RUN(refused);
+    GPROJT_RUN(refused_in_a_solve);
+    GPROJT_RUN(unknowns_without_start);
+    GPROJT_RUN(refreshes_that_fail_in_a_move);
     GPROJT_RUN(misused);
     GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
     GPROJT_RUN(releases_in_frames);
     GPROJT_RUN(releases_cancelled_and_stopped);
     GPROJT_RUN(handles_with_reach);
+    GPROJT_RUN(handles_of_differences);
     GPROJT_RUN(failing_allocations);
     GPROJT_RUN(same_bits_for_all_workers);
     return gprojt_report();
