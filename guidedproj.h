@@ -13366,7 +13366,7 @@ GPROJI_INLINE bool gproji_is_line_end(char c) { return c == '\n' || c == '\r'; }
 GPROJI_INLINE void gproji_skip_line_end(gproji_reader *reader) {
     char c = reader->text[reader->at++];
     if (c == '\r' && reader->at < reader->size && reader->text[reader->at] == '\n') reader->at++;
-    if (reader->line < INT32_MAX) reader->line++;
+    reader->line += reader->line < INT32_MAX;
 }
 
 /* True if a backslash and a line end stand at position i: the line goes on. */
@@ -13790,7 +13790,7 @@ typedef struct gproji_writer {
 } gproji_writer;
 
 GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
-    if (writer->length && !writer->failed && !writer->write(writer->user, writer->buffer, writer->length))
+    if (!writer->failed && !writer->write(writer->user, writer->buffer, writer->length))
         writer->failed = true;
     writer->length = 0;
 }

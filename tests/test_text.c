@@ -20,6 +20,7 @@ GPROJT_TEST(obj_dialects) {
         "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n",
         "v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nv 0 1 0\r\nf 1 2 3 4\r\n",
         "v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4",
+        "v 0 0 0\rv 1 0 0\rv 1 1 0\rv 0 1 0\rf 1 2 3 4\r",
         "\xef\xbb\xbf# comment\n\n  v 0 0 0\n\tv\t1 0 0  \nv 1 1 0 # here\nv 0 1 0\n#f 9 9 9\nf 1 2 3 4",
         "v 0 0 0 1\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0 1 0 0 1\nf 1 2 3 4",
         "mtllib a.mtl\no thing\ng a b\nvt 0 0\nvn 0 0 1\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl m\ns off\ns 1\nf "
@@ -48,7 +49,7 @@ GPROJT_TEST(obj_dialects) {
         mesh = gprojt_read_text(texts[i], &error);
         if (!mesh) printf("  text %d: %s\n", (int)i, error.message);
         GPROJT_CHECK(mesh && error.code == GPROJ_OK && error.index == -1 && !error.message[0]);
-        if (mesh && i == 12) mesh->position[2] = 0; /* -0 */
+        if (mesh && i == 13) mesh->position[2] = 0; /* -0 */
         if (mesh && !gprojt_same_mesh(mesh, first)) printf("  text %d differs\n", (int)i);
         GPROJT_CHECK(mesh && gprojt_same_mesh(mesh, first));
         gproj_mesh_destroy(mesh);
@@ -107,6 +108,7 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {GPROJT_SQUARE "f 1 2 3/x\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'3/x' is not a vertex index"},
     {GPROJT_SQUARE "f 1 2 /3\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'/3' is not"},
     {GPROJT_SQUARE "f a b c\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'a' is not a vertex index"},
+    {GPROJT_SQUARE "f 1 2 3\\", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'3\\' is not"}, /* goes on nowhere */
     {GPROJT_SQUARE "f 1 2 -\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'-' is not"},
     {GPROJT_SQUARE "f\n", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 5, "a face with 0 corners"},
     {GPROJT_SQUARE "f 1 2 \\\n\n", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 5, "line 5: a face with 2 corners"},
@@ -123,6 +125,8 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
      GPROJ_ERROR_NON_ORIENTABLE, GPROJ_PLACE_FACE, 2, "line 8: faces 2 and 3 cannot agree"},
     {"OFF", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 1, "cut off"},
     {"OFFER\n4 1 2\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "is it an OBJ or OFF text?"},
+    {"SOFF\n4 1 2\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "is it an OBJ or OFF text?"},
+    {"SXOFF\n4 1 2\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, "is it an OBJ or OFF text?"},
     {"OFF\n4", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 2, "after 1 of 2 counts"},
     {"OFF\nx 1 2", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 2, "'x' is not a whole number"},
     {"OFF\n-4 1 2", GPROJ_ERROR_SIZE, GPROJ_PLACE_LINE, 2, "a count of -4 vertices"},
@@ -142,6 +146,9 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1", GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 6, "index -1"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 q", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 6, "'q' is not"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6, "a face with 2 corners"},
+    {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-5 0 1", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6, "a face with -5 corners"},
+    {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-4294967293 0 1 2", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6,
+     "a face with -9 corners"}, /* no int32_t, which would be 3 */
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3/1 0 1 2", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 6,
      "'3/1' is not a whole number"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n\ninf 1 0\n3 0 1 2", GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 2, "line 6: coordinate x"},
@@ -177,6 +184,7 @@ GPROJT_TEST(other_formats) {
                                            {"ISO-10303-21;\nHEADER;\n#1=POINT();\n", "a STEP file"},
                                            {"<?xml version=\"1.0\"?>\n<COLLADA>\n", "Collada"}};
     static const char solid[] = "solid\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+    static const char wrong[] = "solid\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n";
     char stl[84 + 2 * 50];
     gproj_error error;
     gproj_mesh *mesh;
@@ -185,6 +193,7 @@ GPROJT_TEST(other_formats) {
         mesh = gprojt_read_text(texts[i][0], &error);
         GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1, texts[i][1]) &&
                      strstr(error.message, "write it as OBJ"));
+        GPROJT_CHECK(!gprojt_read_text(texts[i][0], NULL));
     }
     memset(stl, 0, sizeof stl);
     stl[80] = 2;
@@ -204,6 +213,8 @@ GPROJT_TEST(other_formats) {
     mesh = gprojt_read_text(solid, &error);
     GPROJT_CHECK(mesh && mesh->face_count == 1);
     gproj_mesh_destroy(mesh);
+    mesh = gprojt_read_text(wrong, &error); /* what is wrong in an OBJ stays what is told */
+    GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_INDEX, GPROJ_PLACE_LINE, 5, "line 5: index 9"));
 }
 
 GPROJT_TEST(refused_arguments) {
@@ -215,6 +226,8 @@ GPROJT_TEST(refused_arguments) {
     GPROJT_CHECK(error.code == GPROJ_ERROR_SYNTAX && error.place == GPROJ_PLACE_LINE && error.index == 3);
     GPROJT_CHECK(!gproj_mesh_read("abc", 3, GPROJ_FORMAT_OFF, NULL, &error) &&
                  strstr(error.message, "'abc' where an OFF"));
+    GPROJT_CHECK(!gproj_mesh_read(" \n", 2, GPROJ_FORMAT_OFF, NULL, &error) && error.code == GPROJ_ERROR_SYNTAX &&
+                 strstr(error.message, "after 0 of 2 counts"));
     GPROJT_CHECK(!gproj_mesh_load(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_mesh_save(NULL, "a.obj", &error) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_mesh_write(NULL, GPROJ_FORMAT_OBJ, gprojt_text_write, NULL, NULL) == GPROJ_ERROR_ARGUMENT);
@@ -272,11 +285,20 @@ GPROJT_TEST(round_trips) {
 
 GPROJT_TEST(writer_failures) {
     gprojt_soup s = gprojt_quad_grid(30, 30);
-    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL), *lines;
     gproj_error error;
     gprojt_text text;
     long stop;
     memset(&text, 0, sizeof text);
+    for (stop = 0; stop < 1000; ++stop) gprojt_text_write(&text, "v 0 0 0\nl -1 1\n", 15);
+    lines = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_OBJ, NULL, NULL); /* 8890 bytes of vertices, as many of lines */
+    GPROJT_REQUIRE(lines && lines->polyline_count == 1000);
+    for (stop = 1; stop < 5; ++stop) {
+        text.calls = 0, text.stop_at = stop;
+        GPROJT_CHECK(gproj_mesh_write(lines, GPROJ_FORMAT_OBJ, gprojt_text_write, &text, &error) == GPROJ_ERROR_FILE);
+        GPROJT_CHECK(text.calls == stop);
+    }
+    gproj_mesh_destroy(lines);
     for (stop = 1; stop < 5; ++stop) {
         text.calls = 0, text.stop_at = stop;
         GPROJT_CHECK(gproj_mesh_write(mesh, GPROJ_FORMAT_OBJ, gprojt_text_write, &text, &error) == GPROJ_ERROR_FILE);
@@ -343,8 +365,17 @@ GPROJT_TEST(files) {
     GPROJT_CHECK(gproj_mesh_save(mesh, "a.stl", &error) == GPROJ_ERROR_ARGUMENT &&
                  strstr(error.message, ".obj or .off"));
     GPROJT_CHECK(gproj_mesh_save(mesh, "obj", &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_mesh_save(mesh, "aobj", &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_mesh_save(mesh, "aoff", &error) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_mesh_save(mesh, NULL, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "path to save"));
     GPROJT_CHECK(!gproj_mesh_load(".", NULL, &error) && error.code == GPROJ_ERROR_FILE); /* a folder */
     GPROJT_CHECK(!gproj_mesh_load("a\nb.obj", NULL, &error) && strstr(error.message, "a?b.obj"));
+    GPROJT_CHECK(!gproj_mesh_load("a\x7f" "b.obj", NULL, &error) && strstr(error.message, "'a?b.obj'"));
+    for (i = 0; i < 200; ++i) memcpy(path + 2 * i, "\xc3\xa4", 2);
+    for (i = 0; i < 2; ++i) {
+        memcpy(path + 400, i ? ".obj" : "x.obj", i ? 5 : 6);
+        GPROJT_CHECK(!gproj_mesh_load(path, NULL, &error) && strstr(error.message, "'...\xc3\xa4\xc3\xa4") == error.message);
+    }
     memset(path, 'x', sizeof path);
     memcpy(path + sizeof path - 8, "\xc3\xa4.obj", 7);
     for (i = 0; i < 2; ++i) { /* a long path; cut to its end, at a whole character */
