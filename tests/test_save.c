@@ -123,8 +123,9 @@ static int gprojt_fsync(int descriptor) {
     return fsync(descriptor);
 }
 static int gprojt_fchmod(int descriptor, mode_t mode) { return gprojt_hook() ? -1 : fchmod(descriptor, mode); }
+static bool gprojt_owned; /* neither the owner nor the group can be given */
 static int gprojt_fchown(int descriptor, uid_t user, gid_t group) {
-    return gprojt_hook() ? -1 : fchown(descriptor, user, group);
+    return gprojt_hook() || gprojt_owned ? -1 : fchown(descriptor, user, group);
 }
 static ssize_t gprojt_readlink(const char *path, char *target, size_t size) {
     return gprojt_hook() ? -1 : readlink(path, target, size);
@@ -312,6 +313,9 @@ GPROJT_TEST(sentences) {
     memcpy(path + 4000, "r.obj", 6);
     GPROJT_CHECK(gprojt_save(3, path, NULL) && gprojt_which("r.obj") == 3);
     remove("r.obj");
+    for (i = 4000; i < 4080; i += 2) memcpy(path + i, "./", 2);
+    memcpy(path + 4080, "r.obj", 6); /* a path, but the new file's would be none */
+    GPROJT_CHECK(!gprojt_save(3, path, "too long a path"));
     memset(path, 'n', 251);
     memcpy(path + 251, ".obj", 5); /* as long as a name may be, and not ASCII */
     memcpy(path, "\xc3\xa4\xe6\xb1\x89\xf0\x9f\x8f\xa0", 9);
@@ -401,6 +405,12 @@ GPROJT_TEST(permissions) {
         GPROJT_CHECK(chmod("roof.obj", modes[i]) == 0);
         GPROJT_CHECK(gprojt_save(1, "roof.obj", NULL) && gprojt_mode("roof.obj") == (int)modes[i]);
     }
+    gprojt_owned = true; /* what the group may do, ours may not */
+    for (i = 0; i < sizeof modes / sizeof modes[0]; ++i) {
+        GPROJT_CHECK(chmod("roof.obj", modes[i]) == 0);
+        GPROJT_CHECK(gprojt_save(1, "roof.obj", NULL) && gprojt_mode("roof.obj") == (int)(modes[i] & 0707));
+    }
+    gprojt_owned = false;
     umask(mask);
     if (geteuid() == 0) { /* root saves for others */
         struct stat info;
@@ -427,6 +437,10 @@ GPROJT_TEST(symbolic_links) {
     GPROJT_CHECK(gprojt_is_link("roof.obj") && gprojt_is_link("there/link.obj") && gprojt_is_link("back/link.obj"));
     GPROJT_CHECK(unlink("roof.obj") == 0 && symlink("roof.obj", "roof.obj") == 0);
     GPROJT_CHECK(!gprojt_save(7, "roof.obj", "circle"));
+    memset(target, '/', 4090);
+    memcpy(target, "..", 2), memcpy(target + 4085, "r.obj", 6);
+    GPROJT_CHECK(symlink(target, "there/far.obj") == 0); /* with the folder before it, longer than a path may be */
+    GPROJT_CHECK(!gprojt_save(7, "there/far.obj", "in a circle, or too far"));
     GPROJT_CHECK(unlink("roof.obj") == 0 && symlink("there", "roof.obj") == 0);
     GPROJT_CHECK(!gprojt_save(7, "roof.obj", "it is a folder, a device or a pipe"));
     /* A device in a folder where nothing can be put in its place: a wrong header must not replace /dev/null. */
@@ -460,7 +474,9 @@ GPROJT_TEST(files_without_end) {
     GPROJT_CHECK(symlink("/dev/zero", "zero.obj") == 0 && symlink("/dev/full", "full.off") == 0);
     GPROJT_CHECK(gprojt_load("zero.obj", 0, "line 1: a zero byte; this is a binary file") == GPROJ_ERROR_SYNTAX);
     GPROJT_CHECK(gprojt_load("full.off", 0, "line 1: a zero byte") == GPROJ_ERROR_SYNTAX);
-    GPROJT_CHECK(mkfifo("pipe.obj", 0600) == 0);
+    GPROJT_CHECK(mkdir("folder.obj", 0777) == 0);
+    GPROJT_CHECK(gprojt_load("folder.obj", 0, "'folder.obj' cannot be read; is it a folder") == GPROJ_ERROR_FILE);
+    GPROJT_CHECK(rmdir("folder.obj") == 0 && mkfifo("pipe.obj", 0600) == 0);
     fflush(stdout);
     child = fork();
     if (child == 0) {
