@@ -294,6 +294,79 @@ GPROJT_TEST(attempts) {
         }
 }
 
+/* Where nothing helps, with a length that cannot hold. */
+static void gprojt_add_impossible(gproj_form *form, const gproj_mesh *mesh) {
+    int32_t edge = 0, fixed[2] = {mesh->origin[0], mesh->origin[1]};
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 2, fixed, 1);
+    gproj_add_length_bounds(form, 1, &edge, 9, HUGE_VAL, 1);
+}
+
+/* Later attempts have the time that earlier ones have left: the more time, the more attempts, and none begins without. */
+GPROJT_TEST(attempts_share_the_time) {
+    int32_t attempts = 1, budget;
+    for (budget = 1; attempts < 3 && budget < 2000; budget += budget < 20 ? 1 : budget / 10) {
+        gproj_mesh *mesh = gprojt_twisted(2, 0.3);
+        gproj_solve_options options = gprojt_smooth();
+        gprojt_ticks ticks = {0, 0};
+        gproj_host host;
+        gproj_form *form;
+        gproj_result result;
+        memset(&host, 0, sizeof host);
+        host.clock.now = gprojt_tick, host.clock.user = &ticks;
+        form = gproj_form_create(mesh, &host);
+        gprojt_add_impossible(form, mesh);
+        options.time_budget = budget;
+        result = gproj_solve(form, 200, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT || result.outcome == GPROJ_STALLED);
+        GPROJT_CHECK(result.attempts >= attempts && ticks.reads < budget + 60);
+        attempts = result.attempts;
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(attempts == 3 && budget > 20);
+}
+
+static bool gprojt_spoil_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    const int32_t *at = (const int32_t *)user;
+    if (iteration->number == *at) gproj_system_add_variables(system, 1, 1, NULL); /* refused */
+    return true;
+}
+
+/* A later attempt that is cancelled, or that fails, is the end, however good the earlier one was. */
+GPROJT_TEST(later_attempts_end_early) {
+    int way;
+    int32_t first = 0;
+    for (way = 0; way < 3; ++way) { /* as it is; cancelled, failed in the second attempt */
+        gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+        double *before = gprojt_keep(mesh);
+        gproj_solve_options options = gprojt_smooth();
+        gprojt_attempts seen = {0, 0, 0, true};
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_result result;
+        gprojt_add_impossible(form, mesh);
+        if (way == 0) { /* how long is the first attempt? */
+            GPROJT_CHECK(gproj_solve_begin(form, 200, &options, NULL));
+            while (gproj_solve_is_on(form)) result = gproj_solve_advance(form, 0);
+            first = result.iterations;
+            GPROJT_CHECK(result.outcome == GPROJ_STALLED && first > 3);
+            gprojt_put_back(mesh, before);
+        }
+        options.on_iteration = way < 2 ? gprojt_count_iterations : gprojt_spoil_late;
+        options.user = way < 2 ? (void *)&seen : (void *)&first;
+        first += way == 2 ? 2 : 0;
+        if (way == 1) seen.cancel_at = first + 2;
+        result = gproj_solve(form, 200, &options);
+        GPROJT_CHECK(result.outcome == (way == 0 ? GPROJ_STALLED : way == 1 ? GPROJ_CANCELLED : GPROJ_FAILED));
+        GPROJT_CHECK(result.attempts == (way == 0 ? 3 : 2));
+        if (way == 1) GPROJT_CHECK(seen.last == first + 2);
+        GPROJT_CHECK((gproj_form_error(form)->code == GPROJ_ERROR_STATE) == (way == 2));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(before);
+    }
+}
+
 /* Which of two ends counts: exact before all others, then whole, then near; the earlier one if they are equal. */
 GPROJT_TEST(ends_are_compared) {
     static const struct {
@@ -369,6 +442,86 @@ GPROJT_TEST(frames_and_states) {
     GPROJT_CHECK(most > 3);
 }
 
+/* A form of quads and triangles, flat ones, amid a smooth solve. */
+static gproj_form *gprojt_amid(gproj_mesh *mesh, bool begun) {
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t k;
+    gprojt_add_planar_fixed(form, NULL);
+    if (!begun) return form;
+    GPROJT_CHECK(gproj_solve_begin(form, 60, &options, NULL));
+    for (k = 0; k < 4 && gproj_solve_is_on(form); ++k) gproj_solve_advance(form, 0);
+    GPROJT_CHECK(gproj_solve_is_on(form));
+    return form;
+}
+
+static gproj_mesh *gprojt_wavy_hybrid(void) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_hybrid_grid(7, 6));
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v;
+        p[2] = 0.35 * (sin(6 * p[0] + 1) * cos(5 * p[1]) + 2 * p[0] * p[1]);
+    }
+    return mesh;
+}
+
+static int32_t gprojt_read_integer(const uint8_t *at) {
+    return (int32_t)((uint32_t)at[0] | (uint32_t)at[1] << 8 | (uint32_t)at[2] << 16 | (uint32_t)at[3] << 24);
+}
+
+/* A state lists the corners, edges and bends that have rows. Forged ones, with the right checksum: of half-edges without a
+   face, of bends between faces of which one has no plane of its own, or none at all, beyond the list; or another one than
+   that which the rows say. All are refused, and a right state is taken after that. */
+GPROJT_TEST(forged_corners_are_refused) {
+    gproj_mesh *mesh = gprojt_wavy_hybrid();
+    double *begin = gprojt_keep(mesh);
+    gproj_form *form = gprojt_amid(mesh, true);
+    size_t size = gproj_state_size(form), at;
+    uint8_t *state = (uint8_t *)malloc(size);
+    int32_t H = mesh->halfedge_count, edges = 2 * H, bends = edges + mesh->edge_count, way, count, k;
+    int32_t open = 0, mixed = 0, plain = 0;
+    GPROJT_REQUIRE(state && gproj_state_save(form, state, size, NULL) == GPROJ_OK);
+    gproj_form_destroy(form);
+    at = 24 + 4 + (size_t)gprojt_read_integer(state + 24); /* the head, and the library's own groups, a byte each */
+    count = gprojt_read_integer(state + at);
+    GPROJT_REQUIRE(count > 3);
+    while (mesh->face[open] >= 0) ++open;
+    while (mesh->face[mixed] < 0 || mesh->face[mixed ^ 1] < 0 ||
+           mesh->face_degree[mesh->face[mixed]] == mesh->face_degree[mesh->face[mixed ^ 1]])
+        ++mixed;
+    for (k = 0; k < count; ++k) /* an edge without a row */
+        if (gprojt_read_integer(state + at + 4 + 4 * (size_t)k) == edges + plain) ++plain, k = -1;
+    for (way = 0; way < 9; ++way) {
+        static const char *const says[9] = {"not one of a face", "not one of a face", "not one of a face", "not one of a face",
+                                            "not one of a face", "not one of a face", "out of its range",  "out of its range",
+                                            "has no row"};
+        int32_t item = way == 0   ? 2 * open
+                       : way == 1 ? 2 * open + 1
+                       : way == 2 ? bends + open
+                       : way == 3 ? bends + (open ^ 1)
+                       : way == 4 ? bends + mixed
+                       : way == 5 ? bends + (mixed ^ 1)
+                       : way == 6 ? bends + H
+                       : way == 7 ? -1
+                                  : edges + plain;
+        uint8_t *forged = (uint8_t *)malloc(size);
+        gproj_error error;
+        memcpy(forged, state, size);
+        for (k = 0; k < 4; ++k) forged[at + 4 + (size_t)k] = (uint8_t)((uint32_t)item >> 8 * k);
+        gprojt_seal(forged, size);
+        gprojt_put_back(mesh, begin);
+        form = gprojt_amid(mesh, false);
+        GPROJT_CHECK(gproj_state_restore(form, forged, size, &error) == GPROJ_ERROR_SYNTAX);
+        if (!strstr(error.message, says[way])) printf("  %d: %s\n", way, error.message);
+        GPROJT_CHECK(strstr(error.message, says[way]) && gprojt_unmoved(mesh, begin));
+        GPROJT_CHECK(gproj_state_restore(form, state, size, &error) == GPROJ_OK);
+        gproj_form_destroy(form);
+        free(forged);
+    }
+    free(state), free(begin);
+    gproj_mesh_destroy(mesh);
+}
+
 /* States know how far safeguards yield and when they will further, when the fall was looked at last, how steps went. */
 GPROJT_TEST(creeping_is_saved) {
     gproj_solve_options options = gprojt_smooth();
@@ -398,6 +551,93 @@ GPROJT_TEST(creeping_is_saved) {
     free(state);
 }
 
+static gproj_group_info gprojt_group_named(gproj_form *form, const char *name) {
+    gproj_group_info info;
+    int32_t g, count = gproj_system_group_count(gproj_form_system(form));
+    memset(&info, 0, sizeof info);
+    for (g = 0; g < count; ++g)
+        if (!strcmp(gproj_form_group_info(form, g).name, name)) return gproj_form_group_info(form, g);
+    return info;
+}
+
+/* Both at once are nearest. */
+GPROJT_TEST(smooth_and_nearest_is_nearest) {
+    gproj_mesh *mesh[2];
+    int k;
+    for (k = 0; k < 2; ++k) {
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form;
+        mesh[k] = gprojt_twisted(5, 0.1);
+        form = gproj_form_create(mesh[k], NULL);
+        gprojt_add_planar(form, NULL);
+        options.nearest = true, options.smooth = k;
+        GPROJT_CHECK(gproj_solve(form, 60, &options).outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(gprojt_group_named(form, "smooth change").rows == 0);
+        gproj_form_destroy(form);
+    }
+    GPROJT_CHECK(gprojt_unmoved(mesh[0], mesh[1]->position));
+    gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
+/* Without closeness, which measures the steps, there is no metric; without equilibrium the one of forces rests. */
+GPROJT_TEST(metrics_come_and_go) {
+    gproj_mesh *mesh = gprojt_twisted(5, 0.1);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int round;
+    gprojt_add_carrying(form, mesh);
+    for (round = 0; round < 4; ++round) {
+        options.skip_closeness = round == 0 || round == 3;
+        if (round == 2) gproj_set_schedule(form, 2, gproj_keep(0)); /* equilibrium */
+        GPROJT_CHECK(gproj_solve(form, 60, &options).outcome != GPROJ_FAILED);
+        GPROJT_CHECK((gprojt_group_named(form, "smooth change").schedule.weight > 0) == (round == 1 || round == 2));
+        GPROJT_CHECK((gprojt_group_named(form, "force change").schedule.weight > 0) == (round == 1));
+        GPROJT_CHECK((gprojt_group_named(form, "smooth change").rows > 0) == (round > 0));
+    }
+    GPROJT_CHECK(!strcmp(gproj_form_group_info(form, 2).name, "equilibrium"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Points have no faces whose corners could be kept. */
+GPROJT_TEST(points_are_solved) {
+    static const double p[6] = {0, 0, 0, 1, 2, 3}, to[3] = {5, 5, 5};
+    static const int32_t second = 1;
+    gproj_mesh *mesh = gproj_mesh_create(2, p, 0, NULL, NULL, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    int32_t k;
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, 1, &second, to, 1);
+    GPROJT_CHECK(gproj_solve(form, 20, &options).outcome == GPROJ_CONVERGED);
+    for (k = 0; k < 3; ++k) GPROJT_NEAR(mesh->position[3 + k], to[k], 1e-12);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A face in one point has no plane and no circle: its unknowns stay as they are, and the others get flat. */
+GPROJT_TEST(faces_in_one_point) {
+    gproj_mesh *mesh = gprojt_twisted(5, 0.1);
+    gproj_solve_options options = gprojt_smooth();
+    int32_t face = 12, corner[4], h = mesh->face_halfedge[face], k, c;
+    gproj_form *form;
+    for (k = 0; k < 4; ++k, h = mesh->next[h]) {
+        corner[k] = mesh->origin[h];
+        for (c = 0; c < 3; ++c) mesh->position[3 * corner[k] + c] = mesh->position[3 * corner[0] + c];
+    }
+    form = gproj_form_create(mesh, NULL);
+    gprojt_add_circular(form, NULL);
+    gproj_add_fixed(form, 4, corner, 1);
+    GPROJT_CHECK(gproj_solve(form, 100, &options).outcome != GPROJ_FAILED);
+    GPROJT_CHECK(gprojt_all_finite(mesh->position, 3 * mesh->vertex_count));
+    GPROJT_CHECK(gprojt_all_finite(gproj_system_values(gproj_form_system(form)),
+                                   gproj_system_variable_count(gproj_form_system(form))));
+    for (k = 1; k < 4; ++k)
+        GPROJT_NEAR(gprojt_far(mesh->position + 3 * corner[k], mesh->position + 3 * corner[0]), 0, 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A second solve of what holds does nothing, and one after a change goes on. */
 GPROJT_TEST(solved_again) {
     gproj_mesh *mesh = gprojt_twisted(10, 0.1);
@@ -416,6 +656,24 @@ GPROJT_TEST(solved_again) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A smooth solve, and then one that is not, which adds the guard beside the corners that are there. */
+static bool gprojt_solve_twice(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = (gproj_mesh *)user;
+    double *before = gprojt_keep(mesh);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, host);
+    bool done;
+    gprojt_add_planar(form, NULL);
+    done = gproj_solve(form, 6, &options).outcome != GPROJ_FAILED;
+    gprojt_put_back(mesh, before);
+    if (done) done = gproj_solve(form, 2, NULL).outcome != GPROJ_FAILED;
+    GPROJT_CHECK(done || (gproj_form_error(form)->code == GPROJ_ERROR_MEMORY && gprojt_unmoved(mesh, before)));
+    gproj_form_destroy(form);
+    gprojt_put_back(mesh, before);
+    free(before);
+    return done;
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_twisted(5, 0.2);
     gproj_solve_options options = gprojt_smooth();
@@ -423,6 +681,69 @@ GPROJT_TEST(every_allocation_fails_once) {
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 30, &options) >= 30);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_carrying, mesh, 30, &options) >= 30);
     gproj_mesh_destroy(mesh);
+    mesh = gprojt_twisted(3, 0.3);
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_solve_twice, mesh) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A state saved amid a smooth or a nearest solve, or one with weights and coefficients of its own, comes into a fresh
+   form. */
+typedef struct gprojt_saved {
+    int way;
+    uint8_t *state;
+    size_t size;
+    double *end;
+} gprojt_saved;
+
+static gproj_form *gprojt_form_to_restore(gproj_mesh *mesh, const gproj_host *host, int way) {
+    gproj_form *form = gproj_form_create(mesh, host);
+    gprojt_add_planar_fixed(form, NULL);
+    if (way == 2) gproj_add_fairness(form, 0.1);
+    return form;
+}
+
+static bool gprojt_restore(const gproj_host *host, void *user) {
+    gprojt_saved *saved = (gprojt_saved *)user;
+    gproj_mesh *mesh = gprojt_twisted(4, 0.3);
+    gproj_form *form = gprojt_form_to_restore(mesh, host, saved->way);
+    gproj_error error;
+    gproj_code code = gproj_state_restore(form, saved->state, saved->size, &error);
+    bool whole = code == GPROJ_OK;
+    GPROJT_CHECK(whole || (code == GPROJ_ERROR_MEMORY && error.code == code));
+    while (gproj_solve_is_on(form)) whole = gproj_solve_advance(form, 0).outcome != GPROJ_FAILED;
+    if (saved->way == 2 && whole) whole = gproj_solve(form, 12, NULL).outcome != GPROJ_FAILED;
+    GPROJT_CHECK(!whole || gprojt_largest_move(mesh->position, saved->end, mesh->vertex_count) <= 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return whole;
+}
+
+GPROJT_TEST(restored_without_memory) {
+    static const double own[3] = {1, -0.25, -0.75};
+    gprojt_saved saved;
+    for (saved.way = 0; saved.way < 3; ++saved.way) {
+        gproj_mesh *mesh = gprojt_twisted(4, 0.3);
+        gproj_form *form = gprojt_form_to_restore(mesh, NULL, saved.way);
+        gproj_solve_options options = gprojt_smooth();
+        const int32_t face = 5;
+        const double half = 0.5;
+        int32_t k;
+        options.smooth = saved.way == 0, options.nearest = saved.way == 1;
+        if (saved.way < 2) GPROJT_CHECK(gproj_solve_begin(form, 20, &options, NULL));
+        for (k = 0; saved.way < 2 && k < 3; ++k) gproj_solve_advance(form, 0);
+        if (saved.way == 2) gproj_set_element_weights(form, 0, 1, &face, &half);
+        if (saved.way == 2) gproj_system_set_row(gproj_form_system(form), 2, 5, own, 0);
+        saved.size = gproj_state_size(form);
+        saved.state = (uint8_t *)malloc(saved.size);
+        GPROJT_REQUIRE(saved.state && gproj_state_save(form, saved.state, saved.size, NULL) == GPROJ_OK);
+        while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+        if (saved.way == 2) GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome != GPROJ_FAILED);
+        saved.end = gprojt_keep(mesh);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_restore, &saved) > 30);
+        free(saved.state), free(saved.end);
+    }
 }
 
 /* A smooth solve in frames, in which a vertex is drawn away when the end is near: the steps, by multipliers then, become
@@ -469,11 +790,19 @@ int main(void) {
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
     GPROJT_RUN(attempts);
+    GPROJT_RUN(attempts_share_the_time);
+    GPROJT_RUN(later_attempts_end_early);
     GPROJT_RUN(ends_are_compared);
     GPROJT_RUN(frames_and_states);
+    GPROJT_RUN(forged_corners_are_refused);
     GPROJT_RUN(creeping_is_saved);
+    GPROJT_RUN(smooth_and_nearest_is_nearest);
+    GPROJT_RUN(metrics_come_and_go);
+    GPROJT_RUN(points_are_solved);
+    GPROJT_RUN(faces_in_one_point);
     GPROJT_RUN(solved_again);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(restored_without_memory);
     GPROJT_RUN(drawn_late_without_memory);
     return gprojt_report();
 }
