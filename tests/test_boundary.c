@@ -315,9 +315,17 @@ static void gprojt_add_all(gproj_form *form, void *user) {
     gproj_add_lifting(form, 1);
 }
 
+static void gprojt_add_planes(gproj_form *form, void *user) {
+    (void)user;
+    gproj_add_planar_boundary(form, 1);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 1);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_all, NULL, 3, NULL) >= 20);
+    gproj_mesh_destroy(mesh);
+    mesh = gprojt_noisy(TUBE, 3, 0.05, 1); /* two loops */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planes, NULL, 3, NULL) >= 20);
     gproj_mesh_destroy(mesh);
 }
 

@@ -1183,9 +1183,10 @@ static void gprojt_add_supported(gproj_form *form, const gproj_mesh *mesh, const
    unless the boundary is free or all vertices are supports. */
 GPROJT_TEST(planes_without_carriers_are_named) {
     static const int32_t inner[9] = {6, 7, 8, 11, 12, 13, 16, 17, 18};
+    static const double far[1] = {100};
     double point_load[75];
     int k;
-    for (k = 0; k < 4; ++k) {
+    for (k = 0; k < 5; ++k) {
         gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads;
@@ -1198,7 +1199,12 @@ GPROJT_TEST(planes_without_carriers_are_named) {
         gproj_add_planarity(form, 1);
         gprojt_add_supported(form, mesh, &loads, k == 3);
         if (k != 2) gproj_add_fixed_boundary(form, 1);
+        if (k == 4) { /* equilibrium is not asked for, and something else does not hold */
+            gproj_set_schedule(form, 1, gproj_keep(0));
+            gproj_add_lengths(form, 1, NULL, far, 1);
+        }
         result = gproj_solve(form, 40, NULL);
+        GPROJT_CHECK(k < 4 || result.outcome != GPROJ_CONVERGED);
         GPROJT_CHECK((strstr(result.message, "cannot carry its load") != NULL) == (k == 0));
         if (k == 0) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
         if (k == 0) GPROJT_CHECK(strstr(result.message, "share one plane from face ") != NULL);
@@ -1445,11 +1451,51 @@ GPROJT_TEST(many_held_corners) {
     }
 }
 
+/* More faces are held, each with a plane of its own, than are looked at: two that contradict are found among the first, not
+   behind 300 others. */
+GPROJT_TEST(planes_are_looked_at_in_turn) {
+    static const double square[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {1.2, 2, 0}, {0, 2, 0.25}};
+    static const int32_t corner[2][4] = {{0, 1, 2, 3}, {3, 2, 4, 5}};
+    int late;
+    for (late = 0; late < 2; ++late) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        int32_t *held = (int32_t *)malloc(1300 * sizeof *held), count = 0, k, f, c;
+        if (!held) abort();
+        memset(&soup, 0, sizeof soup);
+        for (f = 0; f < 300; ++f) {
+            bool pair = f == (late ? 299 : 0); /* two quads, of which one vertex is free: see gprojt_two_quads */
+            int32_t first = soup.vertex_count, face[4];
+            for (k = 0; k < (pair ? 6 : 4); ++k) {
+                if (!pair || k != 3) held[count++] = soup.vertex_count;
+                gprojt_add_vertex(&soup, 3 * f + square[k][0], square[k][1], square[k][2]);
+            }
+            for (k = 0; k < 1 + pair; ++k) {
+                for (c = 0; c < 4; ++c) face[c] = first + corner[k][c];
+                gprojt_add_face(&soup, 4, face);
+            }
+        }
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, count, held, 1);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "share one plane from face 0 on, but vertex 5 is held") != NULL) == !late);
+        GPROJT_CHECK((strstr(result.message, "share one plane") != NULL) == !late);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(held);
+    }
+}
+
 /* Rows of the caller's hold a coordinate if they prescribe it: not by its square, nor without a coefficient or weight, and
    not rows for the caller's unknowns. */
 GPROJT_TEST(rows_that_hold) {
     int k;
-    for (k = 0; k < 6; ++k) {
+    for (k = 0; k < 7; ++k) {
         gproj_mesh *mesh = gprojt_graph(1, gprojt_saddle); /* one quad, bent; 3 vertices are fixed */
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_system *s = gproj_form_system(form);
@@ -1465,6 +1511,7 @@ GPROJT_TEST(rows_that_hold) {
             gproj_term term = gprojt_term(at, k == 2 ? at : -1, k == 3 ? 0 : k == 5 ? -2 : 1);
             int32_t row = gproj_system_add_row(s, own, 1, &term, k == 5 ? 2 * x : k == 3 ? 0 : k == 2 ? -x * x : -x, 3);
             GPROJT_CHECK(row == c);
+            if (k == 6) gproj_system_set_row_weight(s, own, row, 0);
         }
         result = gproj_solve(form, 0, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
@@ -2714,7 +2761,24 @@ GPROJT_TEST(every_allocation_fails_once) {
     }
 }
 
-/* The same on a mesh with longer lists, which grow in all builders. */
+/* Builders that come first take the unknowns that they add. */
+static void gprojt_add_one(gproj_form *form, void *user) {
+    int which = *(const int *)user;
+    int32_t group = which == 0   ? gproj_add_equal_lengths(form, 0, NULL, 1)
+                    : which == 1 ? gproj_add_midsphere(form, 0, NULL, 1)
+                                 : gproj_add_equal_areas(form, 1);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK ? group == 0 : group == -1);
+}
+
+GPROJT_TEST(every_allocation_for_unknowns_fails_once) {
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.02, 6);
+    int which;
+    for (which = 0; which < 3; ++which)
+        GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_one, &which, 2, NULL) >= 20);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Everything on a mesh with longer lists, which grow in all builders. */
 GPROJT_TEST(every_allocation_of_builders_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(2, 7, 0.02, 6);
     gprojt_props props = gprojt_take_props(mesh);
@@ -2804,6 +2868,7 @@ int main(void) {
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
     GPROJT_RUN(many_held_corners);
+    GPROJT_RUN(planes_are_looked_at_in_turn);
     GPROJT_RUN(rows_that_hold);
     GPROJT_RUN(the_longest_verdict);
     GPROJT_RUN(gauss_fairness_needs_planarity);
@@ -2847,6 +2912,7 @@ int main(void) {
     GPROJT_RUN(own_rows_units_and_cancelling);
     GPROJT_RUN(verdict_names_what_fights);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(every_allocation_for_unknowns_fails_once);
     GPROJT_RUN(every_allocation_of_builders_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
     GPROJT_RUN(beyond_all_coordinates);

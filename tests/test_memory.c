@@ -131,6 +131,9 @@ GPROJT_TEST(refusals) {
     GPROJT_CHECK(gproj_solve_memory(form, &error) <= told && gproj_solve_memory(form, NULL) > told / 2);
     gproj_solve_advance(form, INFINITY);
     GPROJT_CHECK(gproj_solve_memory(form, &error) == 0 && error.code == GPROJ_ERROR_STATE);
+    gproj_add_planarity(form, NAN); /* after an error of the form this is told */
+    GPROJT_CHECK(gproj_solve_memory(form, &error) == 0 && error.code == gproj_form_error(form)->code);
+    GPROJT_CHECK(error.code != GPROJ_OK && !strcmp(error.message, gproj_form_error(form)->message));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }

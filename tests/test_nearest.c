@@ -479,6 +479,41 @@ GPROJT_TEST(wishes_stay_on) {
     GPROJT_CHECK(result[1].residual <= result[1].tolerance && energy[1] < energy[0]);
 }
 
+/* Closeness defines "near" if nothing else is wished; it rests in a nearest solve that is to do without, or has a wish. */
+GPROJT_TEST(closeness_rests_where_it_is_not_wanted) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_nearest();
+    int round, group = -1;
+    gproj_add_planarity(form, 1);
+    for (round = 0; round < 4; ++round) {
+        options.skip_closeness = round == 1;
+        if (round == 3) gproj_add_fairness(form, 0.1);
+        GPROJT_CHECK(gproj_solve(form, 30, &options).outcome != GPROJ_FAILED);
+        for (group = 0; strcmp(gproj_form_group_info(form, group).name, "closeness") != 0;) ++group;
+        GPROJT_CHECK(gproj_form_group_info(form, group).schedule.weight == (round % 2 ? 0 : 1));
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A face without area cannot lose any: it does not refuse the steps of the others. */
+GPROJT_TEST(faces_without_area) {
+    gproj_mesh *mesh = gprojt_noisy(0, 5, 0.05, 4);
+    gproj_solve_options options = gprojt_nearest();
+    int32_t face = 12, h = mesh->face_halfedge[face], k, c;
+    gproj_form *form;
+    for (k = 1; k < 4; ++k) /* all corners in one point */
+        for (c = 0, h = mesh->next[h]; c < 3; ++c)
+            mesh->position[3 * mesh->origin[h] + c] = mesh->position[3 * mesh->origin[mesh->prev[h]] + c];
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    GPROJT_CHECK(gproj_solve(form, 60, &options).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).planarity_max < 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The meshes and the figures of other tools, where the folder is there. */
 GPROJT_TEST(real_meshes) {
     static const struct {
@@ -536,6 +571,8 @@ int main(void) {
     GPROJT_RUN(same_bits_for_all_crews);
     GPROJT_RUN(honest_verdicts);
     GPROJT_RUN(wishes_stay_on);
+    GPROJT_RUN(closeness_rests_where_it_is_not_wanted);
+    GPROJT_RUN(faces_without_area);
     GPROJT_RUN(real_meshes);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();

@@ -187,6 +187,35 @@ GPROJT_TEST(short_segments_far_away) {
             }
 }
 
+/* A point far across the plane of a triangle may be beyond the ends of all three sides, by rounding: a walk from side to
+   side ends all the same. */
+GPROJT_TEST(walks_around_closed_curves_end) {
+    uint64_t random = 3;
+    int32_t round, around = 0;
+    for (round = 0; round < 2000; ++round) {
+        double x[9], u[3], v[3], p[3];
+        bool forward = true, backward = true;
+        gproj_curve *curve;
+        int32_t k;
+        for (k = 0; k < 3; ++k) gprojt_random_point(&random, 1, x + 3 * k);
+        gprojt_sub3(x + 3, x, u);
+        gprojt_sub3(x + 6, x, v);
+        gprojt_cross3(u, v, p);
+        for (k = 0; k < 3; ++k) p[k] *= 1e18;
+        curve = gproj_curve_create(3, x, true, NULL, NULL);
+        GPROJT_REQUIRE(curve);
+        for (k = 0; k < 3; ++k) {
+            int32_t end = gproji_walk(curve, k, p);
+            GPROJT_CHECK(end >= 0 && end < 3);
+            forward = forward && gproji_along(curve, k, p, true) > 0;
+            backward = backward && gproji_along(curve, k, p, false) < 0;
+        }
+        around += forward || backward;
+        gproj_curve_destroy(curve);
+    }
+    GPROJT_CHECK(around > 10); /* of these the test is */
+}
+
 GPROJT_TEST(curve_errors) {
     double x[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
     gproj_error error;
@@ -565,6 +594,7 @@ int main(void) {
     GPROJT_RUN(loops_are_closed_curves);
     GPROJT_RUN(curve_details);
     GPROJT_RUN(short_segments_far_away);
+    GPROJT_RUN(walks_around_closed_curves_end);
     GPROJT_RUN(curve_errors);
     GPROJT_RUN(nothing_is_near_nothing);
     GPROJT_RUN(curves_from_meshes);

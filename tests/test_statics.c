@@ -1300,6 +1300,53 @@ GPROJT_TEST(forces_are_set_beside_huge_loads) {
     free(w);
 }
 
+/* Forces that have values are not drawn to anything in the next solve, nor are forces in a nearest one. */
+GPROJT_TEST(guidance_of_forces_is_for_their_start) {
+    int nearest;
+    for (nearest = 0; nearest < 2; ++nearest) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 5, 10, 0); /* a plate: the first forces are uniform */
+        gproj_loads loads = gprojt_no_loads();
+        gproj_solve_options options;
+        gproj_form *form;
+        int32_t group = 0, count;
+        memset(&options, 0, sizeof options);
+        loads.area_load = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        options.nearest = nearest;
+        GPROJT_CHECK(gproj_solve(form, 20, &options).outcome != GPROJ_FAILED);
+        count = gproj_system_group_count(gproj_form_system(form));
+        while (group < count && strcmp(gproj_form_group_info(form, group).name, "force guidance")) ++group;
+        GPROJT_CHECK((group < count) == !nearest);
+        if (!nearest) GPROJT_CHECK(gproj_form_group_info(form, group).schedule.weight > 0);
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome != GPROJ_FAILED);
+        if (!nearest) GPROJT_CHECK(gproj_form_group_info(form, group).schedule.weight == 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Equilibrium that has no weight is not missed, whatever else does not hold. */
+GPROJT_TEST(equilibrium_that_is_off_is_not_missed) {
+    int on;
+    for (on = 0; on < 2; ++on) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 4, 10, 0);
+        gproj_loads loads = gprojt_no_loads();
+        double length = 30;
+        gproj_form *form;
+        gproj_result result;
+        loads.area_load = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        gproj_add_fixed(form, 0, NULL, 1);
+        gproj_add_lengths(form, 1, NULL, &length, 1);
+        gproj_set_schedule(form, 0, gproj_keep(on));
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "'lengths'"));
+        GPROJT_CHECK((strstr(result.message, "equilibrium was found") != NULL) == on);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- what cannot be -- */
 
 /* What gproj_find_imbalance gives is a proof: loads do work along it, and no allowed force does the opposite. */
@@ -2071,6 +2118,8 @@ int main(void) {
     GPROJT_RUN(rough_tolerances_are_met);
     GPROJT_RUN(forces_of_any_size_are_set);
     GPROJT_RUN(forces_are_set_beside_huge_loads);
+    GPROJT_RUN(guidance_of_forces_is_for_their_start);
+    GPROJT_RUN(equilibrium_that_is_off_is_not_missed);
     GPROJT_RUN(imbalance_is_a_proof);
     GPROJT_RUN(obstacles_are_named);
     GPROJT_RUN(contradictions_are_named);
