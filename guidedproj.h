@@ -1950,8 +1950,8 @@ GPROJI_INTERNAL void gproji_big_set(gproji_big *a, uint64_t value) {
     a->count = a->limb[1] ? 2 : (a->limb[0] ? 1 : 0);
 }
 
-GPROJI_INTERNAL int32_t gproji_big_bits(const gproji_big *a) {
-    return a->count ? 32 * (a->count - 1) + gproji_bit_length(a->limb[a->count - 1]) : 0;
+GPROJI_INTERNAL int32_t gproji_big_bits(const gproji_big *a) { /* of a > 0 */
+    return 32 * (a->count - 1) + gproji_bit_length(a->limb[a->count - 1]);
 }
 
 /* a = a * factor + addend */
@@ -2248,7 +2248,7 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     /* 2. Is it in [1, 10) already (for the shortest text: once rounded up)? */
     side = limit ? gproji_big_compare(&r, &s) : gproji_big_compare_sum(&r, &m, up, &s);
     *point = k + 1;
-    if (side < 0 || (side == 0 && !limit && !even)) {
+    if (side < 0) { /* rounded up to 10^k is only one double, whose fraction is even: below 10^23 = 5^23 2^23, 54 bits */
         *point = k;
         gproji_big_multiply(&r, 10, 0);
         gproji_big_multiply(&m, 10, 0);
@@ -2589,7 +2589,7 @@ GPROJI_INTERNAL size_t gproji_append_integer(char *text, size_t size, size_t len
     return gproji_append(text, size, length, digits + at, sizeof digits - at);
 }
 
-/* Writes a sentence: %s text, %d int32_t, %l int64_t, %g double with 3 digits, %% the sign. No locale, no stdio. */
+/* Writes a sentence: %s text, %d int32_t, %l int64_t, %g double with 3 digits. No locale, no stdio. */
 GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *format, va_list list) {
     size_t length = 0;
     text[0] = 0;
@@ -2613,7 +2613,6 @@ GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *for
             length = gproji_append(text, size, length, number, digits);
             break;
         }
-        default: length = gproji_append(text, size, length, format, 1); break;
         }
     }
 }

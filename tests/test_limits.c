@@ -37,6 +37,70 @@ static gproj_mesh *gprojt_disc(int32_t degree) {
     return mesh;
 }
 
+/* Without reallocation a block is taken, filled and put in the old one's place, which stays if there is none. */
+GPROJT_TEST(blocks_that_are_copied) {
+    gprojt_failing counted;
+    gproj_host host;
+    gproji_heap heap;
+    double *block;
+    memset(&counted, 0, sizeof counted);
+    host = gprojt_failing_host(&counted);
+    host.allocator.reallocate = NULL;
+    heap = gproji_heap_of(&host);
+    block = (double *)gproji_take_zeroed(&heap, 5, sizeof(double));
+    GPROJT_REQUIRE(block);
+    block[4] = 7;
+    counted.fail_at = 2;
+    GPROJT_CHECK(!gproji_retake(&heap, block, 5, 125, sizeof(double)) && block[4] == 7 && heap.account.used == 40);
+    block = (double *)gproji_retake(&heap, block, 5, 125, sizeof(double));
+    GPROJT_REQUIRE(block && block[3] == 0 && block[4] == 7 && heap.account.used == 1000 && counted.bytes == 1000);
+    block = (double *)gproji_retake(&heap, block, 125, 5, sizeof(double));
+    GPROJT_REQUIRE(block && block[4] == 7 && heap.account.used == 40 && counted.held == 1);
+    gproji_give(&heap, block, 5, sizeof(double));
+    GPROJT_CHECK(heap.account.used == 0 && heap.account.peak == 1040);
+    GPROJT_CHECK(counted.held == 0 && counted.wrong_sizes == 0);
+}
+
+/* Bytes that are only added up: of new blocks, up to the largest number. */
+GPROJT_TEST(foretold_bytes) {
+    gproji_heap heap = gproji_heap_of(NULL);
+    char *block = (char *)gproji_take(&heap, 5, 1);
+    size_t bytes = 0;
+    GPROJT_REQUIRE(block);
+    heap.foretold = &bytes;
+    GPROJT_CHECK(!gproji_take(&heap, 100, 8) && bytes == 800);
+    block[4] = 7;
+    block = (char *)gproji_retake(&heap, block, 5, 9, 1); /* one that is there moves */
+    GPROJT_REQUIRE(block && block[4] == 7 && bytes == 800 && heap.account.used == 9);
+    GPROJT_CHECK(!gproji_take(&heap, SIZE_MAX / 2 / 8, 8) && bytes > SIZE_MAX / 2);
+    GPROJT_CHECK(!gproji_take(&heap, SIZE_MAX / 2 / 8, 8) && bytes == SIZE_MAX);
+    GPROJT_CHECK(!gproji_take(&heap, 1, 1) && bytes == SIZE_MAX);
+    gproji_give(&heap, block, 9, 1);
+    GPROJT_CHECK(heap.account.used == 0);
+}
+
+static void *gprojt_arena_allocate(void *user, size_t size) {
+    char **arena = (char **)user, *block = *arena;
+    *arena += (size + 15) / 16 * 16;
+    return block;
+}
+
+/* A host that never takes a block back: a mesh is as it is with any other. */
+GPROJT_TEST(arenas) {
+    gprojt_soup grid = gprojt_quad_grid(3, 3);
+    gproj_mesh *mesh = gprojt_soup_mesh(&grid, NULL, NULL), *other;
+    char *room = (char *)malloc(1 << 20), *at = room;
+    gproj_host host;
+    memset(&host, 0, sizeof host);
+    host.allocator.allocate = gprojt_arena_allocate, host.allocator.user = &at;
+    other = gprojt_soup_mesh(&grid, &host, &gprojt_last);
+    GPROJT_CHECK(mesh && other && gprojt_same_mesh(mesh, other) && at - room >= (ptrdiff_t)gproj_mesh_memory(other).used);
+    gproj_mesh_destroy(other);
+    gproj_mesh_destroy(mesh);
+    free(room);
+    gprojt_soup_free(&grid);
+}
+
 GPROJT_TEST(vertices_and_corners) {
     gprojt_soup grid = gprojt_quad_grid(6, 6); /* 144 corners */
     gproj_mesh *mesh = gprojt_vertices(99);
@@ -311,6 +375,7 @@ GPROJT_TEST(blocks) {
         gprojt_failing counted;
         gproj_host host;
         gproji_heap heap;
+        gproji_pool pool;
         double *block;
         size_t size;
         memset(&counted, 0, sizeof counted);
@@ -328,6 +393,17 @@ GPROJT_TEST(blocks) {
         GPROJT_CHECK(!limited || !gproji_retake(&heap, block, 5, 126, sizeof(double)));
         GPROJT_CHECK(!limited || !gproji_take(&heap, 961, 1));
         GPROJT_CHECK(counted.calls == 1 && heap.account.used == 40);
+        heap.account.used += SIZE_MAX / 2; /* bytes held that leave no room for more */
+        GPROJT_CHECK(!gproji_take(&heap, 1, 1) && counted.calls == 1);
+        heap.account.used = 40;
+        gproji_pool_start(&pool, &heap);
+        for (size = 1; size <= 4096; size *= 4) {
+            GPROJT_CHECK(!gproji_pool_take(&pool, -1, size) && pool.failed);
+            gproji_pool_give_all(&pool);
+            GPROJT_CHECK(!gproji_pool_take(&pool, INT64_MAX, size) && pool.failed);
+            gproji_pool_give_all(&pool);
+        }
+        GPROJT_CHECK(counted.calls == 1 && heap.account.used == 40 && !pool.failed);
         block = (double *)gproji_retake(&heap, block, 5, 125, sizeof(double));
         GPROJT_REQUIRE(block && heap.account.used == 1000 && block[0] == 0 && block[4] == 0);
         gproji_give(&heap, block, 125, sizeof(double));
@@ -338,6 +414,9 @@ GPROJT_TEST(blocks) {
 
 int main(void) {
     GPROJT_RUN(blocks);
+    GPROJT_RUN(blocks_that_are_copied);
+    GPROJT_RUN(foretold_bytes);
+    GPROJT_RUN(arenas);
     GPROJT_RUN(vertices_and_corners);
     GPROJT_RUN(texts);
     GPROJT_RUN(subdivision);
