@@ -7052,7 +7052,7 @@ GPROJI_INTERNAL double gproji_squares_violation(const gproji_squares *s, int32_t
     double g = s->gradient[j];
     if (x <= s->lower[j] && g >= 0) return 0;
     if (x >= s->upper[j] && g <= 0) return 0;
-    return s->state[j] == GPROJI_VARIABLE_FIXED ? 0 : s->unit[j] * fabs(g);
+    return s->unit[j] * fabs(g);
 }
 
 /* Judges trial, which is within the bounds, and keeps the best so far. True: it is a solution. */
@@ -7118,15 +7118,11 @@ GPROJI_INTERNAL bool gproji_squares_polish(gproji_squares *s, int32_t rounds) {
     return false;
 }
 
-/* Frees all variables that are not fixed; returns how many. */
-GPROJI_INTERNAL int32_t gproji_squares_free_all(gproji_squares *s) {
-    int32_t j, count = 0;
-    for (j = 0; j < s->columns; ++j) {
-        if (s->state[j] == GPROJI_VARIABLE_FIXED) continue;
-        s->state[j] = GPROJI_VARIABLE_FREE;
-        ++count;
-    }
-    return count;
+/* Frees all variables that are not fixed. */
+GPROJI_INTERNAL void gproji_squares_free_all(gproji_squares *s) {
+    int32_t j;
+    for (j = 0; j < s->columns; ++j)
+        if (s->state[j] != GPROJI_VARIABLE_FIXED) s->state[j] = GPROJI_VARIABLE_FREE;
 }
 
 /* -- the interior-point method -- */
@@ -7300,13 +7296,14 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
         if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
     }
     /* 3. The minimum without bounds. */
-    if (s->code != GPROJ_OK || gproji_squares_free_all(s) == 0) return;
+    if (s->code != GPROJ_OK) return;
+    gproji_squares_free_all(s);
     memcpy(s->trial, in->x, (size_t)s->columns * sizeof(double));
     if (gproji_squares_polish(s, 1) || s->code != GPROJ_OK || in->pairs == 0) return;
     gproji_squares_free_all(s);
     /* 4. The interior-point method; polishes whenever it seems to know the active bounds. */
     if (!gproji_squares_interior(s)) return;
-    while (s->code == GPROJ_OK && s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
+    while (s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
         double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
         bool last = !moves || gap <= 1e-22 * first, clear;
         int32_t undecided = 0;
@@ -8150,7 +8147,7 @@ GPROJI_INTERNAL void gproji_declare_zero_sum(gproj_system *s, int32_t group) {
 /* Declares what the rows are to steps; before there are any. */
 GPROJI_INTERNAL void gproji_declare_role(gproj_system *s, int32_t group, gproji_role role) {
     s->group[group].role = role;
-    s->group[group].global = s->group[group].global || role == GPROJI_DENSE;
+    s->group[group].global = role == GPROJI_DENSE;
     s->group[group].guard.slack = role == GPROJI_GUARD ? gproji_guard_slack : 0;
 }
 
@@ -8204,10 +8201,9 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
 /* Has the group room for so many further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
-    return g->term && g->local.variable && wanted - 1 <= GPROJI_ROWS_MAX && wanted <= g->capacity.row &&
-           (!g->share || wanted <= g->capacity.share) && g->term_count + terms <= g->capacity.term &&
-           g->term_count + terms <= GPROJI_TERMS_MAX && gproji_local_count(g) + locals <= g->capacity.local &&
-           gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
+    return g->term && wanted - 1 <= GPROJI_ROWS_MAX && wanted <= g->capacity.row &&
+           g->term_count + terms <= g->capacity.term && g->term_count + terms <= GPROJI_TERMS_MAX &&
+           gproji_local_count(g) + locals <= g->capacity.local && gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
 }
 
 /* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together; false. */
@@ -8227,6 +8223,7 @@ GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
     g->row = (gproji_row *)gproji_grow(&s->heap, g->row, &room->row, rows, sizeof *g->row);
     g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &room->term, terms, sizeof *g->term);
     g->local.variable = (int32_t *)gproji_grow(&s->heap, g->local.variable, &room->local, locals, sizeof(int32_t));
+    /* Without an error `share` has as much room as `row`. */
     if (g->share) g->share = (gproji_share *)gproji_grow(&s->heap, g->share, &room->share, rows, sizeof *g->share);
     return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= rows);
 }
@@ -8377,7 +8374,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
         gproji_row *row = &g->row[r];
-        if (row->terms > 0) memcpy(own + count, g->term + row->term, row->terms * sizeof *own);
+        memcpy(own + count, g->term + row->term, row->terms * sizeof *own);
         row->term = row->source = (uint32_t)count;
         count += row->terms;
     }
@@ -8713,9 +8710,8 @@ GPROJI_INLINED void gproji_expect_rows(const gproj_system *s, int64_t k, bool gr
 
 /* Cache entry: a copy made from shared terms for a permutation. */
 typedef struct gproji_copy {
-    uint64_t order; /* the permutation, 4 bits each */
+    uint64_t order; /* the permutation, 4 bits each; 0: none */
     uint32_t source, term;
-    int32_t locals; /* 0: none */
 } gproji_copy;
 
 /* Lets terms name the locals by their new numbers. key: see gproji_place_group. */
@@ -8735,7 +8731,7 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
     gproji_copy *known = cache + (order * UINT64_C(0x9e3779b97f4a7c15) >> (64 - GPROJI_COPY_BITS));
     bool cached = locals <= GPROJI_COPY_LOCALS; /* of more, `order` says too little */
     size_t wanted = g->term_count + row->terms;
-    if (cached && known->order == order && known->source == row->source && known->locals == locals) {
+    if (cached && known->order == order && known->source == row->source) {
         row->term = known->term;
         return true;
     }
@@ -8746,7 +8742,7 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
     gproji_rename_terms(g->term + g->term_count, row->terms, locals, key);
     row->term = (uint32_t)g->term_count;
     g->term_count = wanted;
-    if (cached) known->order = order, known->source = row->source, known->locals = locals, known->term = row->term;
+    if (cached) known->order = order, known->source = row->source, known->term = row->term;
     return true;
 }
 

@@ -105,6 +105,32 @@ static double violation_of(const squares *s, const double *x) {
     return worst;
 }
 
+/* gproj_least_squares_result.kkt as it is described, by the definition. */
+static double kkt_of(const squares *s, const double *x) {
+    int32_t n = s->p.columns, j;
+    double *g = (double *)malloc(((size_t)n + 1) * sizeof(double)),
+           *near = (double *)malloc(((size_t)s->p.rows + 1) * sizeof(double)), worst = 0, largest = 0;
+    int64_t e;
+    gradient_of(s, x, g);
+    for (j = 0; j < s->p.rows; ++j) near[j] = fabs(s->b[j]);
+    for (j = 0; j < n; ++j)
+        for (e = s->start[j]; e < s->start[j + 1]; ++e)
+            near[s->row[e]] += fabs(s->value[e] * fmin(fmax(0, lower_of(s, j)), upper_of(s, j)));
+    for (j = 0; j < n; ++j) {
+        double length = s->p.damping * s->p.damping, size = length * fabs(fmin(fmax(0, lower_of(s, j)), upper_of(s, j)));
+        for (e = s->start[j]; e < s->start[j + 1]; ++e) {
+            length += s->value[e] * s->value[e];
+            size += fabs(s->value[e]) * near[s->row[e]];
+        }
+        if (!(length > 0)) continue;
+        largest = fmax(largest, size / sqrt(length));
+        if ((x[j] <= lower_of(s, j) && g[j] >= 0) || (x[j] >= upper_of(s, j) && g[j] <= 0)) continue;
+        worst = fmax(worst, fabs(g[j]) / sqrt(length));
+    }
+    free(g), free(near);
+    return worst / largest;
+}
+
 static gproj_least_squares_result solve(squares *s) {
     gproj_least_squares_result result;
     gproj_error error;
@@ -359,6 +385,34 @@ GPROJT_TEST(ill_conditioned) {
     }
 }
 
+/* Nearly dependent columns, with bounds and b of all magnitudes: some of these run out of factorisations. What is said of the
+   point then met is true: it is within its bounds, and violates the conditions by kkt. */
+GPROJT_TEST(all_factorisations) {
+    uint64_t seed = 32;
+    int32_t k, i, j, n = 23, m = 36, limits = 0;
+    for (k = 0; k < 400; ++k) {
+        squares s = squares_of(m, n, (int64_t)m * n);
+        gproj_least_squares_result r;
+        for (j = 0; j < n; ++j) {
+            double middle = (2 * gprojt_uniform(&seed) - 1) * pow(10, 5 * (2 * gprojt_uniform(&seed) - 1));
+            for (i = 0; i < m; ++i) s.row[j * m + i] = i, s.value[j * m + i] = 1.0 / (1 + i + j);
+            s.start[j + 1] = (int64_t)(j + 1) * m;
+            s.lower[j] = j % 4 == 0 ? -HUGE_VAL : middle;
+            s.upper[j] = j % 4 == 1 ? HUGE_VAL : middle + pow(10, 9 * (2 * gprojt_uniform(&seed) - 1));
+        }
+        s.p.upper = s.upper;
+        for (i = 0; i < m; ++i) s.b[i] = (2 * gprojt_uniform(&seed) - 1) * pow(10, 5 * (2 * gprojt_uniform(&seed) - 1));
+        r = solve(&s);
+        for (j = 0; j < n; ++j) GPROJT_CHECK(s.x[j] >= s.lower[j] && s.x[j] <= s.upper[j]);
+        GPROJT_CHECK(r.factorisations <= 80 && r.outcome != GPROJ_LEAST_SQUARES_FAILED);
+        GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_LIMIT || r.kkt <= 1e-9);
+        GPROJT_NEAR(r.kkt, kkt_of(&s, s.x), 1e-2 * r.kkt + 1e-10);
+        limits += r.factorisations == 80 && r.outcome == GPROJ_LEAST_SQUARES_LIMIT;
+        squares_free(&s);
+    }
+    GPROJT_CHECK(limits > 0);
+}
+
 GPROJT_TEST(damping) {
     uint64_t seed = 6;
     double value[2] = {1, 1}, b[1] = {3}, x[2] = {0, 0}, lower[2] = {-HUGE_VAL, 0};
@@ -534,6 +588,52 @@ GPROJT_TEST(cancellation_is_noise) {
         }
 }
 
+/* Entries of one place whose products sum to less than 0, by rounding alone: there is no factor, and nothing is made up. */
+GPROJT_TEST(entries_that_cancel_to_less_than_nothing) {
+    squares s = squares_of(2, 2, 4);
+    gproj_least_squares_result r;
+    s.row[0] = s.row[1] = s.row[2] = 0, s.value[0] = 1e20, s.value[1] = -1e20, s.value[2] = 1; /* x = 1, y = 1e30 */
+    s.row[3] = 1, s.value[3] = 1;
+    s.start[1] = 3, s.start[2] = 4;
+    s.b[0] = 1, s.b[1] = 1e30;
+    s.p.upper = s.upper;
+    s.upper[0] = s.upper[1] = 1e40;
+    s.x[0] = s.x[1] = 0.5;
+    r = solve(&s);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_LIMIT && r.at_bounds == 0);
+    GPROJT_CHECK(s.x[0] == 0.5 && s.x[1] == 0.5);
+    GPROJT_NEAR(r.residual, 1e30, 1e15);
+    GPROJT_CHECK(r.kkt > 0.1);
+    squares_free(&s);
+}
+
+/* The same problem in the smallest units that still have all digits in all products; in smaller ones, where products are 0, it is
+   not said to be solved unless it is. */
+GPROJT_TEST(tiny_numbers) {
+    int32_t k, unit, i, j;
+    for (k = 0; k < 20; ++k) {
+        uint64_t seed = 40 + (uint64_t)k;
+        squares s = random_squares(20, 20, 1.0, &seed);
+        int32_t factorisations = check_solved(&s, 10).factorisations;
+        double x[20];
+        memcpy(x, s.x, sizeof x);
+        for (unit = -480; unit >= -1000; unit -= 260) {
+            uint64_t again = 40 + (uint64_t)k;
+            squares t = random_squares(20, 20, 1.0, &again);
+            gproj_least_squares_result r;
+            for (i = 0; i < 20; ++i) t.b[i] = ldexp(t.b[i], unit);
+            r = solve(&t);
+            GPROJT_CHECK(unit < -480 || (r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.factorisations == factorisations));
+            for (j = 0; j < 20; ++j) {
+                GPROJT_CHECK(t.x[j] >= 0);
+                GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_LIMIT || fabs(ldexp(t.x[j], -unit) - x[j]) <= 1e-9);
+            }
+            squares_free(&t);
+        }
+        squares_free(&s);
+    }
+}
+
 /* +-1e50 are bounds like others, and a variable without a bound may go beyond them. */
 GPROJT_TEST(unbounded_means_unbounded) {
     squares s = squares_of(3, 3, 3);
@@ -703,6 +803,29 @@ GPROJT_TEST(starts) {
     squares_free(&s);
 }
 
+/* A start near the solution, but off the bounds that it should be at, is no worse than none; nor is one that is further off than
+   numbers reach. */
+GPROJT_TEST(starts_beside_the_bounds) {
+    int32_t k, i;
+    for (k = 0; k < 10; ++k) {
+        squares s = roof(WAVE, 10, k % 2 == 1, 0.2, 50 + (uint64_t)k);
+        double residual = check_solved(&s, 50).residual;
+        for (i = 0; i < s.p.columns; ++i) s.x[i] += 1e-6 * (1 + i % 3);
+        GPROJT_NEAR(check_solved(&s, 50).residual, residual, 1e-9);
+        squares_free(&s);
+    }
+    {
+        squares s = squares_of(2, 2, 2);
+        s.row[1] = 1, s.value[0] = s.value[1] = 1, s.start[1] = 1, s.start[2] = 2;
+        s.b[0] = 1e-290, s.b[1] = -1e-290;
+        s.x[0] = s.x[1] = 1e50;
+        check_solved(&s, 1e-150);
+        GPROJT_NEAR(s.x[0], 1e-290, 1e-304);
+        GPROJT_CHECK(s.x[1] == 0);
+        squares_free(&s);
+    }
+}
+
 GPROJT_TEST(deterministic) {
     int32_t k;
     for (k = 0; k < 2; ++k) {
@@ -806,9 +929,31 @@ static bool solve_with(const gproj_host *host, void *user) {
     return code == GPROJ_OK;
 }
 
+/* The solution of a problem almost like it is the start, and nobody asks for the error. */
+static bool solve_from_near(const gproj_host *host, void *user) {
+    squares *s = (squares *)user;
+    gproj_least_squares_result r;
+    int32_t j;
+    gproj_code code;
+    for (j = 0; j < s->p.columns; ++j) s->x[j] = s->upper[j];
+    code = gproj_solve_least_squares(&s->p, host, s->x, &r, NULL);
+    if (code == GPROJ_OK) {
+        GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.factorisations == 1);
+    } else {
+        GPROJT_CHECK(code == GPROJ_ERROR_MEMORY && r.outcome == GPROJ_LEAST_SQUARES_FAILED);
+        GPROJT_CHECK(memcmp(s->x, s->upper, (size_t)s->p.columns * sizeof(double)) == 0);
+    }
+    return code == GPROJ_OK;
+}
+
 GPROJT_TEST(failing_allocations) {
     squares s = roof(SADDLE, 6, true, 0.2, 17);
+    int32_t i;
     GPROJT_CHECK(gprojt_fail_every_allocation(solve_with, &s) >= 10);
+    solve(&s);
+    memcpy(s.upper, s.x, (size_t)s.p.columns * sizeof(double));
+    for (i = 0; i < s.p.rows; ++i) s.b[i] *= 1.0001;
+    GPROJT_CHECK(gprojt_fail_every_allocation(solve_from_near, &s) >= 10);
     squares_free(&s);
 }
 
@@ -819,6 +964,7 @@ int main(void) {
     GPROJT_RUN(dependent_columns);
     GPROJT_RUN(units);
     GPROJT_RUN(ill_conditioned);
+    GPROJT_RUN(all_factorisations);
     GPROJT_RUN(damping);
     GPROJT_RUN(all_bounds_hold);
     GPROJT_RUN(fixed_variables);
@@ -826,12 +972,15 @@ int main(void) {
     GPROJT_RUN(without_bounds);
     GPROJT_RUN(columns_of_all_sizes);
     GPROJT_RUN(cancellation_is_noise);
+    GPROJT_RUN(entries_that_cancel_to_less_than_nothing);
+    GPROJT_RUN(tiny_numbers);
     GPROJT_RUN(unbounded_means_unbounded);
     GPROJT_RUN(empty);
     GPROJT_RUN(roofs);
     GPROJT_RUN(large_roofs);
     GPROJT_RUN(real_meshes);
     GPROJT_RUN(starts);
+    GPROJT_RUN(starts_beside_the_bounds);
     GPROJT_RUN(deterministic);
     GPROJT_RUN(bad_arguments);
     GPROJT_RUN(bad_bounds);

@@ -320,6 +320,14 @@ GPROJT_TEST(rows_and_terms) {
     GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_OK && gprojt_add_sum(s, group, 0, 1, 1) == -1);
     GPROJT_CHECK(gprojt_stays(s, 100, group, 6, "group 'rows' has too many rows or terms"));
     gproj_system_destroy(s);
+    /* 300 terms, which name 600 variables. */
+    s = gprojt_system_of(100, &group);
+    for (r = 0; r <= 150; ++r) {
+        gproj_term term[2] = {gprojt_term(0, 1, 1), gprojt_term(2, 3, 1)};
+        GPROJT_CHECK(gproj_system_add_row(s, group, 2, term, -1, r) == (r < 150 ? r : -1));
+    }
+    GPROJT_CHECK(gprojt_stays(s, 100, group, 150, "group 'rows' has too many rows or terms"));
+    gproj_system_destroy(s);
     s = gprojt_system_of(100, &group);
     for (r = 0; r < 6; ++r) gprojt_add_sum(s, group, 0, 100, 1);
     GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_OK && gproj_system_solve(s, 9, NULL).outcome == GPROJ_CONVERGED);
@@ -343,6 +351,19 @@ GPROJT_TEST(rows_together) {
         GPROJT_CHECK(gproj_system_solve(s, 9, &options).outcome == GPROJ_FAILED);
         GPROJT_CHECK(gprojt_stays(s, 150, group, 7, "the groups have too many rows or terms together"));
         for (r = 0; r < 150; ++r) GPROJT_CHECK(gproj_system_values(s)[r] == 0);
+        gproj_system_destroy(s);
+    }
+    { /* 601 rows, but few terms */
+        int32_t group, r;
+        gproj_system *s = gprojt_system_of(150, &group);
+        gprojt_add_group(s, "others", GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "more", GPROJ_CONSTRAINT, 1);
+        for (r = 0; r < 601; ++r) gproj_system_add_row(s, r % 3, 0, NULL, 0, r);
+        gprojt_add_linear(s, 1, 7, 1, -1, 0);
+        GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_OK);
+        GPROJT_CHECK(gproj_system_solve(s, 9, NULL).outcome == GPROJ_FAILED);
+        GPROJT_CHECK(gprojt_stays(s, 150, group, 201, "the groups have too many rows or terms together"));
+        GPROJT_CHECK(gproj_system_values(s)[7] == 0);
         gproj_system_destroy(s);
     }
 }

@@ -263,6 +263,63 @@ GPROJT_TEST(residuals_by_element) {
     free(face);
 }
 
+/* Rows of no element, rows without weight and rows beyond all numbers, where residuals are asked for and weights given. The
+   system takes any number for an element; those that the mesh does not have are none of its elements. */
+GPROJT_TEST(rows_of_no_element) {
+    static const double none[3] = {0, 0, 0};
+    static const int32_t elements[] = {-1, 1000000, 2, 3, 5};
+    gproj_mesh *mesh = gprojt_cap(4, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *system = gproj_form_system(form);
+    gproj_solve_options options;
+    double *vertex = (double *)calloc((size_t)mesh->vertex_count, sizeof(double)), weight[2] = {0, 3};
+    int32_t group = gproj_add_rows(form, "heights", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), k, some[2] = {3, 2};
+    for (k = 0; k < 5; ++k) {
+        gproj_term z = gprojt_term(3 * k + 2, k == 4 ? 14 : -1, k == 4 ? DBL_MAX : 1);
+        GPROJT_CHECK(gproj_system_add_row(system, group, 1, &z, k == 4 ? DBL_MAX : -50, elements[k]) == k);
+    }
+    GPROJT_CHECK(gproj_set_element_weights(form, group, 2, some, weight) == GPROJ_OK);
+    for (k = 0; k < 5; ++k) GPROJT_CHECK(gprojt_inside_row_weight(form, group, k) == (k == 2 ? 3 : k == 3 ? 0 : 1));
+    memset(&options, 0, sizeof options);
+    options.skip_closeness = true;
+    gproj_solve(form, 0, &options);
+    GPROJT_CHECK(gproj_form_residuals(form, group, vertex, NULL) == GPROJ_OK);
+    for (k = 0; k < mesh->vertex_count; ++k)
+        GPROJT_CHECK(vertex[k] == (k == 2 ? 50 - gproj_system_values(system)[8] : k == 5 ? HUGE_VAL : 0));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(vertex);
+}
+
+/* Rows that come after their group's elements have weights: they begin with a weight of 1, and the others keep theirs. */
+GPROJT_TEST(rows_after_weights_of_elements) {
+    static const double none[3] = {0, 0, 0};
+    gproj_mesh *mesh = gprojt_cap(6, 1, none);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group = gproj_add_rows(form, "heights", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), v, round;
+    double *weight = (double *)calloc((size_t)mesh->vertex_count, sizeof(double));
+    for (v = 0; v < mesh->vertex_count; ++v) weight[v] = v % 3;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        gproj_term z = gprojt_term(3 * v + 2, -1, 1);
+        gproj_form_add_row(form, group, 1, &z, -0.01 * v, v);
+        if (v == 4) GPROJT_CHECK(gproj_set_element_weights(form, group, v, NULL, weight) == GPROJ_OK);
+    }
+    for (v = 0; v < mesh->vertex_count; ++v)
+        GPROJT_CHECK(gprojt_inside_row_weight(form, group, v) == (v < 4 ? weight[v] : 1));
+    for (round = 0; round < 2; ++round) {
+        double before = mesh->position[2];
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+        for (v = 0; v < mesh->vertex_count; ++v)
+            if (round ? weight[v] > 0 : v != 0 && v != 3) GPROJT_NEAR(mesh->position[3 * v + 2], 0.01 * v, 1e-11);
+        GPROJT_CHECK(fabs(mesh->position[2] - before) < 1e-3);
+        for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] += 0.1;
+        GPROJT_CHECK(gproj_set_element_weights(form, group, 0, NULL, weight) == GPROJ_OK);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(weight);
+}
+
 /* Each wrong call says what is wrong. */
 GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
@@ -470,12 +527,14 @@ GPROJT_TEST(edge_midpoints_on_a_sphere) {
 }
 
 static void gprojt_add_own(gproj_form *form, void *user) {
-    double ball[4] = {0, 0, -3, 5};
-    int32_t group = gproj_add_rows(form, "ball", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), at, r;
+    double ball[4] = {0, 0, -3, 5}, weight = 2;
+    int32_t group = gproj_add_rows(form, "ball", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), at, r, vertex = 0;
     (void)user;
     at = gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 3, ball, NULL, NULL);
     r = gproj_form_add_unknowns(form, group, GPROJ_UNIT_LENGTH, 1, ball + 3, NULL, NULL);
     gprojt_add_ball_row(form, group, 0, at, r, 5);
+    gproj_set_element_weights(form, group, 1, &vertex, &weight);
+    for (vertex = 1; vertex < 9; ++vertex) gprojt_add_ball_row(form, group, vertex, at, r, 5);
     gproj_add_midsphere(form, 3, NULL, 1);
 }
 
@@ -492,6 +551,8 @@ int main(void) {
     GPROJT_RUN(meddling_start_values);
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
+    GPROJT_RUN(rows_of_no_element);
+    GPROJT_RUN(rows_after_weights_of_elements);
     GPROJT_RUN(wrong_rows_are_refused);
     GPROJT_RUN(unknowns_refused);
     GPROJT_RUN(groups_have_their_own_unknowns);

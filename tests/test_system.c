@@ -1,4 +1,5 @@
 /* test_system.c - >>system: rows as data, every refusal, and one step against a dense solve of the normal equations. */
+#define GPROJ_STATIC
 #include "gprojt_form.h"
 #include "gprojt_inside.h"
 
@@ -995,6 +996,47 @@ GPROJT_TEST(grows_between_solves) {
     gprojt_twin_free(&t);
 }
 
+/* Rows as builders place them, before a solve and after it: rows with a like one's terms share them, others do not. x_i - x_j
+   = 1 along a chain, and twice that where rows are not like the first. */
+static void gprojt_place_chain(gproj_system *s, int32_t first, int32_t last) {
+    static const gproj_term one[2] = {{0, -1, -1}, {1, -1, 1}}, two[2] = {{0, -1, -2}, {1, -1, 2}};
+    int32_t i;
+    for (i = first; i < last; ++i) {
+        int32_t *local = gproji_add_placed_rows(s, 0, 0, 1, 2, i % 3 == 2 ? two : one, 2, i % 3 == 2 ? -2 : -1, i);
+        if (!local) return;
+        local[i % 2] = i, local[1 - i % 2] = i + 1; /* in both orders */
+    }
+}
+
+static bool gprojt_use_placed_rows(const gproj_host *host, void *user) {
+    static const double half[2] = {-0.5, 0.5};
+    gproj_system *s = gproj_system_create(host);
+    bool right;
+    int32_t i;
+    (void)user;
+    if (!s) return false;
+    gproj_system_add_variables(s, 20, 1, NULL);
+    gprojt_add_group(s, "chain", GPROJ_CONSTRAINT, 1);
+    gprojt_place_chain(s, 0, 9);
+    gproj_system_solve(s, 5, NULL);
+    gprojt_place_chain(s, 9, 19);
+    gproj_system_add_row(s, 0, 0, NULL, 0, 0);
+    gproj_system_set_row(s, 0, 4, half, -0.5); /* the same equation, in terms of its own */
+    right = gproj_system_solve(s, 5, NULL).outcome == GPROJ_CONVERGED;
+    for (i = 0; right && i < 19; ++i) {
+        const double *x = gproj_system_values(s);
+        GPROJT_NEAR(x[i + 1] - x[i], i % 2 ? -1 : 1, 1e-12);
+    }
+    GPROJT_CHECK(right || gproj_system_error(s)->code == GPROJ_ERROR_MEMORY);
+    gproj_system_destroy(s);
+    return right;
+}
+
+GPROJT_TEST(placed_rows) {
+    GPROJT_CHECK(gprojt_use_placed_rows(NULL, NULL));
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_placed_rows, NULL) >= 20);
+}
+
 /* -- memory -- */
 
 /* Every way of taking memory; true when nothing failed. */
@@ -1082,6 +1124,7 @@ int main(void) {
     GPROJT_RUN(steps_with_wide_rows_only);
     GPROJT_RUN(empty_systems);
     GPROJT_RUN(grows_between_solves);
+    GPROJT_RUN(placed_rows);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(memory_is_accounted_and_limited);
     return gprojt_report();
