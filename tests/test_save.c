@@ -48,6 +48,7 @@ static bool gprojt_armed;
 static int gprojt_calls;   /* since armed */
 static int gprojt_fail_at; /* the call that fails; 0: none */
 static int gprojt_stop_at; /* the call before which the process stops */
+static bool gprojt_lost;   /* the call that failed is one that puts the new file on the disk */
 static int gprojt_links;   /* so many next temporary names are taken by symbolic links to "victim" */
 static gprojt_disk gprojt_power;
 
@@ -58,8 +59,15 @@ static bool gprojt_hook(void) {
     return gprojt_calls == gprojt_fail_at;
 }
 
+/* The same for a call on which the new file depends, until it has the target's name. */
+static bool gprojt_lose(void) {
+    bool fails = gprojt_hook();
+    if (fails && !gprojt_power.renamed) gprojt_lost = true;
+    return fails;
+}
+
 static void gprojt_arm(int fail_at, int stop_at) {
-    gprojt_armed = true;
+    gprojt_armed = true, gprojt_lost = false;
     gprojt_calls = 0, gprojt_fail_at = fail_at, gprojt_stop_at = stop_at;
     memset(&gprojt_power, 0, sizeof gprojt_power);
 }
@@ -81,7 +89,7 @@ static long gprojt_size(const char *path) {
 }
 
 static int gprojt_rename(const char *from, const char *to) {
-    if (gprojt_hook()) return -1;
+    if (gprojt_lose()) return -1;
     if (gprojt_armed) {
         gprojt_power.renamed = true;
         if (gprojt_power.flushed != gprojt_size(from)) gprojt_power.torn = true;
@@ -103,17 +111,17 @@ static int gprojt_open(const char *path, int flags, ...) {
 static size_t gprojt_pieces; /* > 0: no write takes more bytes */
 static int gprojt_idle;      /* > 0: the write with this number, from now on, takes none */
 static ssize_t gprojt_write(int descriptor, const void *text, size_t size) {
-    if (gprojt_hook()) return -1;
+    if (gprojt_lose()) return -1;
     if (gprojt_idle > 0 && --gprojt_idle == 0) return 0;
     return write(descriptor, text, gprojt_pieces && size > gprojt_pieces ? gprojt_pieces : size);
 }
 static int gprojt_close(int descriptor) {
     int code = close(descriptor);
-    return gprojt_hook() ? -1 : code;
+    return gprojt_lose() ? -1 : code;
 }
 static int gprojt_fsync(int descriptor) {
     struct stat info;
-    if (gprojt_hook()) return -1;
+    if (gprojt_lose()) return -1;
     if (gprojt_armed && fstat(descriptor, &info) == 0) {
         if (S_ISDIR(info.st_mode))
             gprojt_power.permanent = gprojt_power.renamed;
@@ -144,12 +152,12 @@ static FILE *gprojt_fopen(const char *path, const char *mode) {
     return fopen(path, mode);
 }
 static size_t gprojt_fwrite(const void *text, size_t size, size_t count, FILE *file) {
-    return gprojt_hook() ? 0 : fwrite(text, size, count, file);
+    return gprojt_lose() ? 0 : fwrite(text, size, count, file);
 }
-static int gprojt_fflush(FILE *file) { return gprojt_hook() ? EOF : fflush(file); }
+static int gprojt_fflush(FILE *file) { return gprojt_lose() ? EOF : fflush(file); }
 static int gprojt_fclose(FILE *file) {
     int code = fclose(file);
-    return gprojt_hook() ? EOF : code;
+    return gprojt_lose() ? EOF : code;
 }
 #define fopen gprojt_fopen
 #define fwrite gprojt_fwrite
@@ -248,6 +256,7 @@ GPROJT_TEST(each_call_fails_once) { /* the old file stays, or the new one is the
             calls = gprojt_calls;
             GPROJT_CHECK(gprojt_which("roof.obj") == (saved ? 19 : old ? 0 : -1));
             GPROJT_CHECK(saved || old || gprojt_size("roof.obj") < 0);
+            GPROJT_CHECK(!saved || !gprojt_lost);
             GPROJT_CHECK(gprojt_leftovers() == 0);
             failures += !saved;
         } while (calls >= call);
@@ -435,6 +444,8 @@ GPROJT_TEST(symbolic_links) {
     GPROJT_CHECK(gprojt_which("real.obj") == 5);
     GPROJT_CHECK(gprojt_save(6, "roof.obj", NULL) && gprojt_which("real.obj") == 6 && gprojt_which("roof.obj") == 6);
     GPROJT_CHECK(gprojt_is_link("roof.obj") && gprojt_is_link("there/link.obj") && gprojt_is_link("back/link.obj"));
+    GPROJT_CHECK(unlink("roof.obj") == 0 && symlink("r", "roof.obj") == 0); /* to the shortest name */
+    GPROJT_CHECK(gprojt_save(8, "roof.obj", NULL) && gprojt_which("r") == 8 && gprojt_is_link("roof.obj"));
     GPROJT_CHECK(unlink("roof.obj") == 0 && symlink("roof.obj", "roof.obj") == 0);
     GPROJT_CHECK(!gprojt_save(7, "roof.obj", "circle"));
     memset(target, '/', 4090);
@@ -448,7 +459,7 @@ GPROJT_TEST(symbolic_links) {
     GPROJT_CHECK(access("/dev/pts/ptmx", F_OK) || !gprojt_save(7, "roof.obj", "it is a folder, a device or a pipe"));
     GPROJT_CHECK(unlink("roof.obj") == 0 && mkfifo("roof.obj", 0600) == 0);
     GPROJT_CHECK(!gprojt_save(7, "roof.obj", "it is a folder, a device or a pipe"));
-    GPROJT_CHECK(system("rm -r there back real.obj roof.obj") == 0 && gprojt_leftovers() == 0);
+    GPROJT_CHECK(system("rm -r there back real.obj roof.obj r") == 0 && gprojt_leftovers() == 0);
 }
 #endif
 
