@@ -20845,7 +20845,7 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     x = gproj_system_values(form->system);
     for (i = 0; i < count; ++i)
-        if (first < 0 || i > INT32_MAX - first || !gproji_find_unit(form, first + i, &offset, &factor))
+        if (!gproji_find_unit(form, first + i, &offset, &factor)) /* also where first < 0; no variable is INT32_MAX */
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
                                "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
                                (int64_t)first + i);
@@ -23910,7 +23910,6 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
     if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL)) {
-        if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "drag: what must hold cannot be linearised here: its numbers are too large or too "
                            "different");

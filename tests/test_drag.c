@@ -567,6 +567,33 @@ GPROJT_TEST(what_cannot_be_restored) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A row with small numbers may ask for a long way: it is not gone, for no vertex moves by more than an edge to take a
+   residual off. */
+GPROJT_TEST(restorations_by_far_are_not_made) {
+    gproj_mesh *mesh = gprojt_roof(5, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t v = gprojt_middle(mesh), group, far = 0;
+    double *before = gprojt_keep(mesh), edge = gproj_mesh_mean_edge_length(mesh), p[3];
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    gproj_term term = gprojt_term(3 * far, -1, 0.01);
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 0.001;
+    group = gproj_add_rows(form, "10 edges away", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+    gproj_form_add_row(form, group, 1, &term, -0.01 * (mesh->position[3 * far] + 10 * edge), far);
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    memcpy(p, before + 3 * v, sizeof p), p[2] += 0.5 * edge;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK && gproj_drag_get_info(drag).linearisations == 2);
+    GPROJT_CHECK(gprojt_far(mesh->position + 3 * v, p) < 1e-9);
+    GPROJT_CHECK(gprojt_far(mesh->position + 3 * far, before + 3 * far) <= edge);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before);
+}
+
 /* A handle that jumps to where nothing can be linearised is refused, and the drag goes on as if it had not been. */
 GPROJT_TEST(a_wild_move) {
     static const double far[] = {1e5, 1e20, 1e69};
@@ -1188,6 +1215,7 @@ int main(void) {
     GPROJT_RUN(a_long_drag);
     GPROJT_RUN(restorations_stay_near);
     GPROJT_RUN(what_cannot_be_restored);
+    GPROJT_RUN(restorations_by_far_are_not_made);
     GPROJT_RUN(a_wild_move);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);

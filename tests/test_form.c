@@ -2669,6 +2669,16 @@ GPROJT_TEST(no_form_and_no_mesh) {
     gproj_form_units(NULL, centre, &scale);
     GPROJT_CHECK(centre[0] == 0 && centre[1] == 0 && centre[2] == 0 && scale == 1);
     GPROJT_CHECK(!gproj_form_is_corner(NULL, 0));
+    { /* nor has a form without memory for its places */
+        gprojt_failing failing;
+        gproj_host host;
+        memset(&failing, 0, sizeof failing);
+        failing.fail_at = 2;
+        host = gprojt_failing_host(&failing);
+        form = gproj_form_create(mesh, &host);
+        GPROJT_CHECK(form && gproj_form_error(form)->code == GPROJ_ERROR_MEMORY && !gproj_form_is_corner(form, 0));
+        gproj_form_destroy(form);
+    }
     gprojt_give_props(&props);
     gproj_mesh_destroy(mesh);
 }

@@ -424,6 +424,24 @@ GPROJT_TEST(groups_have_their_own_unknowns) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A row without terms is a number, which holds only if it is 0. */
+GPROJT_TEST(rows_without_terms) {
+    static const double shift[3] = {1, 2, 3};
+    double number;
+    for (number = 0; number < 3; number += 2) {
+        gproj_mesh *mesh = gprojt_cap(4, 5, shift);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t group = gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, 1);
+        gproj_result result;
+        GPROJT_CHECK(gproj_form_add_row(form, group, 0, NULL, number, -1) == 0);
+        result = gproj_solve(form, 10, NULL);
+        GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (number == 0));
+        GPROJT_NEAR(result.residual, number / gprojt_unit(form), 1e-15);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A start value in range, but not in the form's units: 1e60 is 1e360 mean edges, beyond all numbers. */
 GPROJT_TEST(start_values_beyond_the_units) {
     static const double none[3] = {0, 0, 0}, far = 1e60;
@@ -556,6 +574,7 @@ int main(void) {
     GPROJT_RUN(wrong_rows_are_refused);
     GPROJT_RUN(unknowns_refused);
     GPROJT_RUN(groups_have_their_own_unknowns);
+    GPROJT_RUN(rows_without_terms);
     GPROJT_RUN(start_values_beyond_the_units);
     GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(flat_midspheres_begin_in_their_plane);

@@ -615,10 +615,12 @@ GPROJT_TEST(points_are_solved) {
     gproj_mesh_destroy(mesh);
 }
 
-/* A face in one point has no plane and no circle: its unknowns stay as they are, and the others get flat. */
+/* A face in one point has no plane and no circle: its unknowns stay as they are, and the others get flat. Amid others, then
+   by itself, where it stays to the bit. */
 GPROJT_TEST(faces_in_one_point) {
     gproj_mesh *mesh = gprojt_twisted(5, 0.1);
     gproj_solve_options options = gprojt_smooth();
+    gprojt_soup soup = gprojt_quad_grid(5, 5);
     int32_t face = 12, corner[4], h = mesh->face_halfedge[face], k, c;
     gproj_form *form;
     for (k = 0; k < 4; ++k, h = mesh->next[h]) {
@@ -634,6 +636,18 @@ GPROJT_TEST(faces_in_one_point) {
                                    gproj_system_variable_count(gproj_form_system(form))));
     for (k = 1; k < 4; ++k)
         GPROJT_NEAR(gprojt_far(mesh->position + 3 * corner[k], mesh->position + 3 * corner[0]), 0, 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    for (k = 0; k < soup.vertex_count; ++k) soup.position[3 * k + 2] = 0.1 * sin(3.0 * k);
+    for (k = 0; k < 4; ++k) corner[k] = gprojt_add_vertex(&soup, 0.7, 2.1, 1.3);
+    gprojt_add_face(&soup, 4, corner);
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    gprojt_add_circular(form, NULL);
+    GPROJT_CHECK(gproj_solve(form, 100, &options).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).planarity_max < 1e-9);
+    for (k = 0; k < 4; ++k)
+        for (c = 0; c < 3; ++c) GPROJT_CHECK(mesh->position[3 * corner[k] + c] == (c == 0 ? 0.7 : c == 1 ? 2.1 : 1.3));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
