@@ -3849,7 +3849,7 @@ GPROJI_INTERNAL void gproji_amd_gather(gproji_amd *amd, int32_t pivot, const int
     int32_t k;
     for (k = 0; k < count; ++k) {
         int32_t i = from[k], weight = amd->weight[i];
-        if (weight <= 0 || amd->kind[i] != GPROJI_AMD_VARIABLE) continue; /* gone, or already in the new element */
+        if (weight <= 0) continue; /* gone, or already in the new element; other elements are in no list of variables */
         amd->weight[i] = -weight;
         amd->degree[pivot] += weight;
         amd->space[amd->free++] = i;
@@ -4008,7 +4008,7 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
         gproji_amd_list_add(amd, i);
         element[to++] = i;
     }
-    if (amd->list[pivot] + amd->length[pivot] == amd->free) amd->free = amd->list[pivot] + to;
+    amd->free = amd->list[pivot] + to; /* it is the last list */
     amd->length[pivot] = to;
     if (to == 0) amd->kind[pivot] = GPROJI_AMD_GONE;
     amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
@@ -4523,7 +4523,7 @@ GPROJI_INTERNAL int32_t gproji_nd_most(const gproji_nd *nd, const int32_t *value
 GPROJI_INTERNAL int32_t gproji_nd_last(const gproji_nd *nd, const int32_t *distance) {
     const int32_t *inner = nd->here.inner;
     int32_t k = nd->nodes - 1, best = nd->queue[k];
-    for (; k >= 0 && distance[nd->queue[k]] == distance[best]; --k)
+    for (; distance[nd->queue[k]] == distance[best]; --k) /* not up to the root, which is nearer */
         if (inner[nd->queue[k]] < inner[best]) best = nd->queue[k];
     return best;
 }
@@ -5291,7 +5291,7 @@ enum {
     GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
     GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
     GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
-    GPROJI_DISSECT_MOST = INT32_MAX / 4 /* nodes; coordinates are sums of distances */
+    GPROJI_DISSECT_MOST = GPROJI_INDEX_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 
 typedef struct gproji_symbolic {
@@ -5512,7 +5512,7 @@ GPROJI_INTERNAL bool gproji_better_order(gproji_analysis *an, gproji_condensatio
             double weight = rest->weight[i];
             all += weight, next += weight * (double)(rest->start[i + 1] - rest->start[i]);
         }
-        square = rest->nodes > 0 ? next / 8 * all / rest->nodes : 0;
+        square = next / 8 * all / rest->nodes; /* the neighbours of condensed nodes are left */
         forecast = (gproji_rim(rest) > 1 ? 1 : 2) * square * sqrt(square);
         /* The second term stands for the time that dissection takes in any case. */
         if (forecast > (double)GPROJI_DISSECT_FORECAST * (out->nodes + GPROJI_DISSECT_LEAST / 2)) {
@@ -5838,7 +5838,7 @@ GPROJI_INTERNAL bool gproji_layout(gproji_analysis *an, bool concurrent) {
     return true;
 }
 
-/* Analyses a graph whose nodes weigh `columns` altogether; the options permute nodes. concurrent: may tasks overlap in
+/* Analyses a graph whose nodes weigh `columns` altogether; the options give no order. concurrent: may tasks overlap in
    time? That takes more memory, and changes nothing else. `keep` holds the arrays in `out`. False: no memory. */
 GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph, int32_t columns,
                                     const gproj_cholesky_options *options, bool concurrent, gproji_symbolic *out) {
@@ -5877,7 +5877,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
         if (ordering == GPROJ_ORDERING_AMD)
             done = gproji_amd_order(keep->heap, graph, columns, out->order, NULL);
         else
-            for (i = 0; i < n; ++i) out->order[i] = ordering == GPROJ_ORDERING_GIVEN ? options->permutation[i] : i;
+            for (i = 0; i < n; ++i) out->order[i] = i;
         if (done) gproji_count_factor(&an, 0);
     }
     gproji_pool_give_all(&condensed.pool);
@@ -6035,7 +6035,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 /* -- analysis -- */
 
 /* Analyses a graph, and prepares the permutation and the scatter runs. Node i has the columns
-   member[member_start[i]..]; without `member` these numbers themselves. The options permute nodes. False: no memory. */
+   member[member_start[i]..]; without `member` these numbers themselves. The options give no order. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
                                                    const gproj_cholesky_options *options, const int32_t *member_start,
                                                    const int32_t *member) {
@@ -6081,7 +6081,7 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
 }
 
 /* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph
-   (see gproji_graph). The options permute nodes. */
+   (see gproji_graph). The options give no order. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
                                                           const int32_t *node_size, const int64_t *adjacency_start,
                                                           const int32_t *adjacency,
@@ -6414,7 +6414,7 @@ GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
         gproji_clear(panel->values + at, next - at);
     }
     begin = gproji_max(begin, pivot_end) - pivot_end, end = to - pivot_end;
-    if (begin < end && (from < pivot_end || !panel->fresh)) {
+    if (begin < end && !panel->fresh) {
         ptrdiff_t at = gproji_update_offset(panel->update_rows, begin) + gproji_strip_begin(begin);
         ptrdiff_t next = gproji_update_offset(panel->update_rows, end) + gproji_strip_begin(end);
         gproji_clear(panel->update + at, next - at);

@@ -727,6 +727,37 @@ GPROJT_TEST(cholesky_not_positive_definite) {
     gproj_cholesky_destroy(c);
 }
 
+/* Two grids whose columns alternate, in their order as it stands: tasks go through one grid, then through the other. Of
+   failing columns in both the first one is named, whichever grid it is in. */
+GPROJT_TEST(cholesky_names_the_first_failing_column) {
+    enum {
+        SIDE = 70
+    };
+    matrix m = matrix_empty(2 * SIDE * SIDE);
+    gproj_cholesky *c = gproj_cholesky_create(NULL);
+    gproj_cholesky_options natural = options_of(GPROJ_ORDERING_NATURAL);
+    int32_t v, k;
+    for (v = 0; v < m.n; ++v) {
+        matrix_add(&m, v, v, 5);
+        if (v / 2 % SIDE < SIDE - 1) matrix_add(&m, v + 2, v, -1);
+        if (v / 2 / SIDE < SIDE - 1) matrix_add(&m, v + 2 * SIDE, v, -1);
+    }
+    matrix_finish(&m);
+    natural.disable_postorder = true;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, &natural) == GPROJ_OK);
+    GPROJT_CHECK(c->symbolic.tasks >= 4);
+    GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_FACTORED);
+    for (k = 0; k < 2; ++k) {
+        int32_t first = 40 + k, second = 61 - k;
+        m.value[m.start[first]] = m.value[m.start[second]] = -5;
+        GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_NOT_POSITIVE_DEFINITE);
+        GPROJT_CHECK(gproj_cholesky_get_info(c).failed_column == first);
+        m.value[m.start[first]] = m.value[m.start[second]] = 5;
+    }
+    matrix_free(&m);
+    gproj_cholesky_destroy(c);
+}
+
 /* -- threads -- */
 
 /* The solution with a host that runs tasks its way, and with these kernels; the first unknown of a failing matrix in
@@ -921,7 +952,13 @@ GPROJT_TEST(cholesky_arguments) {
     GPROJT_CHECK(gproj_cholesky_factor(c, value) == GPROJ_FACTORED);
     GPROJT_CHECK(gproj_cholesky_solve(c, -1, x, x) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_cholesky_solve(c, 1, NULL, x) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(gproj_cholesky_solve(c, 1, x, NULL) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_cholesky_refine(c, start, row, NULL, x, x, 1) == HUGE_VAL);
+    GPROJT_CHECK(gproj_cholesky_refine(c, NULL, row, value, x, x, 1) == HUGE_VAL);
+    GPROJT_CHECK(gproj_cholesky_refine(c, start, NULL, value, x, x, 1) == HUGE_VAL);
+    GPROJT_CHECK(gproj_cholesky_refine(c, start, row, value, NULL, x, 1) == HUGE_VAL);
+    GPROJT_CHECK(gproj_cholesky_refine(c, start, row, value, x, NULL, 1) == HUGE_VAL);
+    GPROJT_CHECK(gproj_cholesky_error(c)->code == GPROJ_ERROR_ARGUMENT && x[0] == 3 && x[1] == 3);
     GPROJT_CHECK(gproj_cholesky_solve(c, 0, NULL, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_solve(c, 1, x, x) == GPROJ_OK);
     GPROJT_NEAR(x[0], 1, 1e-15);
@@ -1073,6 +1110,7 @@ int main(void) {
     GPROJT_RUN(cholesky_refactor_without_allocation);
     GPROJT_RUN(cholesky_refine_improves);
     GPROJT_RUN(cholesky_not_positive_definite);
+    GPROJT_RUN(cholesky_names_the_first_failing_column);
     GPROJT_RUN(cholesky_same_bits_for_any_workers);
     GPROJT_RUN(cholesky_panels_and_updates_share_memory);
     GPROJT_RUN(cholesky_arguments);

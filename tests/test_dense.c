@@ -300,6 +300,27 @@ GPROJT_TEST(dense_add) {
     }
 }
 
+/* Pieces without gaps tell how many follow, as far as their number has two bytes. */
+GPROJT_TEST(dense_runs_of_pieces) {
+    enum {
+        BELOW = 600000
+    };
+    const gproji_kernels *kernels;
+    int32_t at = 0, to = 0, kind, k;
+    FOR_ALL_KERNELS {
+        size_t most = (size_t)gproji_pieces_most(1, BELOW);
+        gproji_piece *piece = (gproji_piece *)malloc(most * sizeof *piece);
+        int32_t count = gproji_find_pieces(kernels, 1, &at, 0, BELOW, &to, BELOW, piece), rows = 0;
+        for (k = 0; k < count; ++k) {
+            GPROJT_CHECK(piece[k].from == rows && piece[k].to == rows);
+            GPROJT_CHECK(!kernels->spreads || (piece[k].run > 0 && k + piece[k].run <= count));
+            rows += piece[k].rows;
+        }
+        GPROJT_CHECK(rows == BELOW && (size_t)count <= most);
+        free(piece);
+    }
+}
+
 /* The columns of a panel follow each other, each from the first row of its block on; together eliminated ones have the
    stride that kernels are told. */
 GPROJT_TEST(dense_columns_of_panels) {
@@ -359,6 +380,7 @@ int main(void) {
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);
     GPROJT_RUN(dense_add);
+    GPROJT_RUN(dense_runs_of_pieces);
     GPROJT_RUN(dense_columns_of_panels);
     return gprojt_report();
 }

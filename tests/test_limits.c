@@ -242,13 +242,25 @@ GPROJT_TEST(matrices) {
     static int64_t start[302];
     static const int32_t row[1] = {0};
     gproj_cholesky *c = gproj_cholesky_create(NULL);
+    gproj_cholesky_options options;
+    int32_t path[200], order[200], j;
     gproj_least_squares problem;
     double x[301] = {0};
     GPROJT_CHECK(gproj_cholesky_analyse(c, 236, start, row, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_analyse(c, 237, start, row, NULL) == GPROJ_ERROR_SIZE);
     gprojt_last = *gproj_cholesky_error(c);
     GPROJT_CHECK(gprojt_is_size("a matrix cannot have 237 columns"));
+    /* Dissection, whose coordinates are sums of distances, is for 75 nodes here; beyond it is minimum degree. */
+    memset(&options, 0, sizeof options);
+    for (j = 0; j < 200; ++j) path[j] = j < 199 ? j + 1 : j, start[j + 1] = j + 1;
+    for (j = 0; j < 2; ++j) {
+        options.ordering = j ? GPROJ_ORDERING_AMD : GPROJ_ORDERING_DISSECTION;
+        GPROJT_CHECK(gproj_cholesky_analyse(c, 200, start, path, &options) == GPROJ_OK);
+        if (j == 0) memcpy(order, gproj_cholesky_permutation(c), sizeof order);
+        GPROJT_CHECK(memcmp(order, gproj_cholesky_permutation(c), sizeof order) == 0);
+    }
     gproj_cholesky_destroy(c);
+    memset(start, 0, sizeof start);
     memset(&problem, 0, sizeof problem);
     problem.start = start, problem.row = row, problem.b = x;
     problem.rows = 1, problem.columns = 237;

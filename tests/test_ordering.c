@@ -337,6 +337,45 @@ GPROJT_TEST(ordering_of_graphs) {
         }
 }
 
+/* Layers of about equal width, of which one has many more nodes, or fewer: cuts beside it may leave a side empty. */
+static graph layers(uint64_t *seed) {
+    int32_t count = 4 + gprojt_below(seed, 30), width = 1 + gprojt_below(seed, 20), heavy = gprojt_below(seed, count);
+    int32_t at[40], k, i, j, n = 0;
+    graph g;
+    for (k = 0; k < count; ++k) {
+        at[k] = n;
+        n += k == heavy ? 1 + gprojt_below(seed, 12) * width : width + gprojt_below(seed, 3);
+    }
+    at[count] = n;
+    g = graph_of(n);
+    for (k = 0; k < count; ++k)
+        for (i = at[k]; i < at[k + 1]; ++i) {
+            int32_t own = at[k + 1] - at[k], up = k + 1 < count ? at[k + 2] - at[k + 1] : 0;
+            for (j = 0; j < 2 && up > 0; ++j) graph_edge(&g, i, at[k + 1] + ((i - at[k]) * up / own + j) % up);
+            if (k > 0) graph_edge(&g, i, at[k - 1] + (i - at[k]) * (at[k] - at[k - 1]) / own);
+            if (gprojt_below(seed, 4) == 0) graph_edge(&g, i, at[k] + gprojt_below(seed, own));
+        }
+    graph_finish(&g, 1 + gprojt_below(seed, 3));
+    graph_weigh(&g);
+    return g;
+}
+
+GPROJT_TEST(ordering_of_layers) {
+    gproji_heap heap = gproji_heap_of(NULL);
+    uint64_t seed = 13;
+    int32_t k, order[4000];
+    for (k = 0; k < 60; ++k) {
+        graph g = layers(&seed);
+        double amd = analysed(&g, GPROJ_ORDERING_AMD, NULL).flops, flops;
+        GPROJT_REQUIRE(g.nodes <= 4000 && gproji_dissect(&heap, &g.view, g.total, order));
+        GPROJT_CHECK(is_permutation(g.nodes, order));
+        flops = analysed(&g, GPROJ_ORDERING_DISSECTION, order).flops;
+        GPROJT_NEAR(flops / naive_flops(&g, order), 1, 1e-9);
+        GPROJT_CHECK(analysed(&g, GPROJ_ORDERING_BEST, NULL).flops <= amd);
+        graph_free(&g);
+    }
+}
+
 /* What dissection costs, over minimum degree, and the better one of both; where dissection is sure to be good, the other
    one is not tried. */
 GPROJT_TEST(ordering_of_large_graphs) {
@@ -825,8 +864,25 @@ static bool analyse_with(const gproj_host *host, void *user) {
     return code == GPROJ_OK;
 }
 
+/* Grids of n x n nodes, each joined to the next by an edge. */
+static graph chain(int32_t grids, int32_t n) {
+    graph g = graph_of(grids * n * n);
+    int32_t v;
+    for (v = 0; v < g.nodes; ++v) {
+        if (v % n < n - 1) graph_edge(&g, v, v + 1);
+        if (v / n % n < n - 1) graph_edge(&g, v, v + n);
+        if (v % (n * n) == n * n - 1 && v + 1 < g.nodes) graph_edge(&g, v, v + 1);
+    }
+    graph_finish(&g, 3);
+    graph_weigh(&g);
+    return g;
+}
+
 GPROJT_TEST(ordering_every_allocation_fails) {
     graph g = make(GRID, 900);
+    GPROJT_CHECK(gprojt_fail_every_allocation(dissect_with, &g) >= 36);
+    graph_free(&g);
+    g = chain(16, 12); /* the first cuts are small, so that memory for others is taken later */
     GPROJT_CHECK(gprojt_fail_every_allocation(dissect_with, &g) >= 36);
     graph_free(&g);
     g = make(RANDOM_DENSE, 300); /* without a separator */
@@ -876,6 +932,7 @@ GPROJT_TEST(ordering_is_deterministic) {
 
 int main(void) {
     GPROJT_RUN(ordering_of_graphs);
+    GPROJT_RUN(ordering_of_layers);
     GPROJT_RUN(ordering_of_large_graphs);
     GPROJT_RUN(ordering_of_grids);
     GPROJT_RUN(dissection_separates);
