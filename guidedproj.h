@@ -14508,7 +14508,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     if (!sharpness || !corner) code = gproji_fail_memory(error);
     /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
     for (k = 0; !code && k < mesh->edge_count; ++k)
-        if (mesh->face[2 * k] < 0 || mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
+        if (mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
     for (k = 0; !code && k < mesh->vertex_count && !given.round_corners; ++k)
         corner[k] = gproj_mesh_is_boundary_vertex(mesh, k) && gproj_mesh_valence(mesh, k) == 2;
     for (k = 0; !code && k < given.crease_count; ++k) {
@@ -14812,9 +14812,9 @@ GPROJI_INTERNAL int32_t gproji_hierarchy_closest(const gproji_hierarchy *tree, c
             continue;
         }
         /* 2. Compare the items in a leaf, unless the box is farther than the best so far. */
-        for (i = node->begin; i < node->end && here <= best && node->right < 0; ++i) {
+        for (i = node->begin; i < node->end && here <= best; ++i) {
             double d = gproji_closest_on_item(tree, tree->item[i], point, out, weight);
-            if (d < best || (d <= best && (best_item < 0 || tree->item[i] < best_item))) {
+            if (d < best || (d <= best && tree->item[i] < best_item)) {
                 best = d;
                 best_item = tree->item[i];
             }
@@ -15342,7 +15342,7 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         size_t rows = gproji_edit_block[kind].rows, size = gproji_edit_block[kind].size;
         char *block;
         if (needed <= old) continue;
-        room = needed < INT32_MAX / 2 ? gproji_max(needed, 2 * old) : needed; /* doubles: n additions cost O(n) */
+        room = gproji_max(needed, 2 * old); /* n additions cost O(n); old < needed, at most half the largest int32_t */
         block = (char *)gproji_take_zeroed(&object->heap, (size_t)room, rows * size);
         if (!block) return gproji_fail_memory(error);
         for (r = 0; r < rows; ++r)
@@ -15638,7 +15638,7 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
                                "edge %d cannot be collapsed: vertices %d and %d have both an edge to vertex %d, and no "
                                "triangle is between",
                                h / 2, a, b, v);
-        if (f >= 0 && s->face_mark[f] == object->stamp && f != s->face[h] && f != s->face[g])
+        if (f >= 0 && s->face_mark[f] == object->stamp && f != s->face[h]) /* the one of g is not met */
             return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_EDGE, h / 2,
                                "edge %d cannot be collapsed: vertices %d and %d are corners of face %d, too", h / 2, a,
                                b, f);

@@ -47,3 +47,5 @@ void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]) {
         watched[4] = loop->trust.restless, watched[5] = loop->trust.left;
     }
 }
+
+void gprojt_inside_wear(gproj_edit *edit) { gproji_edit_owner(edit, NULL)->stamp = INT32_MAX - 2; }

@@ -40,4 +40,7 @@ bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);
 
+/* Wears an edit's marks as nearly 2^31 collapses do. */
+void gprojt_inside_wear(gproj_edit *edit);
+
 #endif

@@ -359,7 +359,7 @@ static inline const char *gprojt_validate_vertices(const gproj_mesh *m) {
             if (k > 0 && (h == start || m->face[h] < 0)) wrong = "one boundary half-edge, one fan";
         }
         if (h != start) wrong = "the fan closes";
-        for (k = 0; k < valence && k < 64; ++k) { /* ring: from the first to the last along the faces */
+        for (k = 0; k < (valence > 64 ? 63 : valence); ++k) { /* ring: from the first to the last along the faces */
             int32_t last = k + 1 == valence, following = ring[last ? 0 : k + 1];
             int32_t i = start, found = 0;
             do { /* some face at v has ... following -> ... in counter-clockwise order: v, ring[k], ..., following */

@@ -1,5 +1,6 @@
 /* test_edit.c - >>edit: each change of the combinatorics keeps what a mesh promises, or is refused and changes nothing.
    */
+#include "gprojt_inside.h"
 #include "gprojt_mesh.h"
 
 /* -- the edit itself -- */
@@ -89,14 +90,15 @@ static gproj_mesh *gprojt_edit_mesh(gproj_edit *e) {
     return mesh;
 }
 
-static gproj_edit *gprojt_edit_shape(int shape, int32_t n) {
-    gprojt_soup s = gprojt_shape(shape, n);
+static gproj_edit *gprojt_edit_soup(gprojt_soup s) {
     gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
     gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
     gproj_mesh_destroy(mesh);
     gprojt_soup_free(&s);
     return edit;
 }
+
+static gproj_edit *gprojt_edit_shape(int shape, int32_t n) { return gprojt_edit_soup(gprojt_shape(shape, n)); }
 
 static int32_t gprojt_euler(const gproj_mesh *m) {
     return m->vertex_count - m->isolated_count - m->edge_count + m->face_count;
@@ -571,6 +573,25 @@ GPROJT_TEST(each_edge_by_itself) {
     GPROJT_CHECK(collapsed > 100);
 }
 
+/* After 2^31 collapses the marks that each of them leaves begin anew: the same are refused as by a new edit. */
+GPROJT_TEST(marks_begin_anew) {
+    int shape;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        gproj_edit *e = gprojt_edit_shape(shape, 3), *worn = gprojt_edit_shape(shape, 3);
+        int32_t edge, collapsed = 0, refused = 0;
+        for (edge = 0; edge < e->edge_count; ++edge) {
+            int32_t kept = gproj_edit_collapse_edge(e, edge, 0.5, NULL);
+            if (edge == 5) gprojt_inside_wear(worn);
+            GPROJT_CHECK(gproj_edit_collapse_edge(worn, edge, 0.5, NULL) == kept);
+            GPROJT_CHECK(gprojt_edit_hash(worn) == gprojt_edit_hash(e));
+            collapsed += kept >= 0, refused += kept < 0;
+        }
+        GPROJT_CHECK(collapsed > 8 && refused > 8 && gprojt_validate_edit(worn) == NULL);
+        gproj_edit_destroy(e);
+        gproj_edit_destroy(worn);
+    }
+}
+
 /* -- strips -- */
 
 /* A strip inserted at each edge that has one and removed again. Quads stay quads. */
@@ -884,6 +905,51 @@ GPROJT_TEST(diagonals_that_are_edges) {
     }
 }
 
+/* A face without area, whose every other ear is a triangle already: it is cut where it can be. */
+GPROJT_TEST(every_other_ear_is_an_edge) {
+    gprojt_soup s;
+    gproj_error error;
+    int32_t i, face[200];
+    gproj_mesh *mesh;
+    gproj_edit *e;
+    memset(&s, 0, sizeof s);
+    for (i = 0; i < 200; ++i) face[i] = gprojt_add_vertex(&s, i, 0, 0);
+    gprojt_add_face(&s, 200, face);
+    for (i = 1; i < 200; i += 2) gprojt_add_triangle(&s, (i + 2) % 200, (i + 1) % 200, i);
+    e = gprojt_edit_soup(s);
+    GPROJT_REQUIRE(e != NULL);
+    GPROJT_CHECK(gproj_edit_triangulate(e, -1, &error) == 197);
+    mesh = gprojt_edit_mesh(e);
+    GPROJT_CHECK(mesh && mesh->face_count == 298 && mesh->edge_count == 300 + 197);
+    gproj_mesh_destroy(mesh);
+    gproj_edit_destroy(e);
+}
+
+/* Positions whose squares are beyond all numbers, though the area is not: triangles all the same. */
+GPROJT_TEST(triangles_of_the_largest_size) {
+    double scale;
+    for (scale = 0.5e154; scale < 1.4e154; scale += 0.02e154) {
+        static const int32_t corner[] = {0, 1, 2, 3, 4, 5, 6};
+        gprojt_soup s;
+        gproj_error error;
+        gproj_mesh *mesh;
+        gproj_edit *e;
+        int32_t i;
+        memset(&s, 0, sizeof s);
+        gprojt_add_vertex(&s, 0, 0, 0);
+        for (i = 0; i < 6; ++i) gprojt_add_vertex(&s, cos(1.0472 * i), sin(1.0472 * i), 0);
+        gprojt_add_face(&s, 7, corner);
+        e = gprojt_edit_soup(s);
+        for (i = 0; i < 21; ++i) e->position[i] *= scale;
+        GPROJT_CHECK(gproj_edit_triangulate(e, 0, &error) == 4);
+        for (i = 0; i < 21; ++i) e->position[i] /= scale;
+        mesh = gprojt_edit_mesh(e);
+        GPROJT_CHECK(mesh && mesh->face_count == 5);
+        gproj_mesh_destroy(mesh);
+        gproj_edit_destroy(e);
+    }
+}
+
 /* -- the dual -- */
 
 GPROJT_TEST(dual_of_the_dual) {
@@ -1152,6 +1218,35 @@ GPROJT_TEST(what_would_be_no_mesh_is_refused) {
     gproj_edit_destroy(e);
 }
 
+/* A face with n corners, and around it a cone of quads i + 1, i, i + 2 and the apex, which have all the diagonals that cut
+   off a corner: no triangle can be the first. */
+GPROJT_TEST(ears_that_are_edges) {
+    static const int32_t sizes[] = {5, 8, 128, 129, 131, 400};
+    int32_t k, i, n;
+    for (k = 0; k < 6; ++k) {
+        gprojt_soup s;
+        gproj_error error;
+        int32_t face[400];
+        uint64_t before;
+        gproj_edit *e;
+        memset(&s, 0, sizeof s);
+        n = sizes[k];
+        for (i = 0; i < n; ++i) {
+            double angle = 6.283185307179586 * i / n;
+            face[i] = gprojt_add_vertex(&s, cos(angle), sin(angle), 0.1 * sin(5 * angle));
+        }
+        gprojt_add_vertex(&s, 0, 0, -1);
+        gprojt_add_face(&s, n, face);
+        for (i = 0; i < n; ++i) gprojt_add_quad(&s, (i + 1) % n, i, (i + 2) % n, n);
+        e = gprojt_edit_soup(s);
+        GPROJT_REQUIRE(e && gproj_edit_edge(e, 0, 2) >= 0 && gproj_edit_edge(e, n - 1, 1) >= 0);
+        before = gprojt_edit_hash(e);
+        GPROJT_REFUSED(gproj_edit_triangulate(e, 0, &error), NON_MANIFOLD, FACE, 0, "its diagonals are edges already");
+        GPROJT_CHECK(gprojt_edit_hash(e) == before);
+        gproj_edit_destroy(e);
+    }
+}
+
 /* -- memory -- */
 
 static bool gprojt_use_edit(const gproj_host *host, void *user) {
@@ -1209,6 +1304,7 @@ int main(void) {
     GPROJT_RUN(collapses_carry_numbers_on);
     GPROJT_RUN(split_and_collapse_is_nothing);
     GPROJT_RUN(each_edge_by_itself);
+    GPROJT_RUN(marks_begin_anew);
     GPROJT_RUN(strips_come_and_go);
     GPROJT_RUN(strips_that_cross_themselves);
     GPROJT_RUN(strips_are_cut_where_asked);
@@ -1217,12 +1313,15 @@ int main(void) {
     GPROJT_RUN(triangles_are_the_best);
     GPROJT_RUN(triangles_are_turned_least);
     GPROJT_RUN(diagonals_that_are_edges);
+    GPROJT_RUN(every_other_ear_is_an_edge);
+    GPROJT_RUN(triangles_of_the_largest_size);
     GPROJT_RUN(dual_of_the_dual);
     GPROJT_RUN(dual_with_boundary);
     GPROJT_RUN(nothing_but_vertices);
     GPROJT_RUN(a_large_mesh_made_small);
     GPROJT_RUN(arguments_are_checked);
     GPROJT_RUN(what_would_be_no_mesh_is_refused);
+    GPROJT_RUN(ears_that_are_edges);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }

@@ -196,6 +196,14 @@ GPROJT_TEST(edits) {
     GPROJT_CHECK(gprojt_split_to_the_end(edit) == 62 && gprojt_is_size("more than 99 vertices or 74 edges"));
     gproj_edit_destroy(edit);
     gproj_mesh_destroy(mesh);
+    /* Vertices beside the faces count, too: 95 and 4 more. */
+    text = gprojt_text_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", 92, "v 1 2 3\n", "");
+    mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);
+    free(text);
+    edit = gproj_edit_create(mesh, NULL, NULL);
+    GPROJT_CHECK(gprojt_split_to_the_end(edit) == 4 && gprojt_is_size("more than 99 vertices or 74 edges"));
+    gproj_edit_destroy(edit);
+    gproj_mesh_destroy(mesh);
     /* A polyline that goes along an edge 70 times each way, and has room for 9 more vertices. */
     text = gprojt_text_of("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl", 70, " 1 2", " 1\n");
     mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);

@@ -168,7 +168,7 @@ GPROJT_TEST(areas_and_lengths) {
 GPROJT_TEST(nothing_is_asked) {
     gprojt_soup s = gprojt_quad_grid(2, 2);
     gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
-    int32_t ring[4] = {7, 7, 7, 7};
+    int32_t ring[4] = {7, 7, 7, 7}, i;
     double area[3] = {1, 1, 1};
     GPROJT_REQUIRE(mesh != NULL);
     GPROJT_CHECK(gproj_mesh_valence(NULL, 0) == 0 && gproj_mesh_valence(mesh, -1) == 0);
@@ -179,6 +179,11 @@ GPROJT_TEST(nothing_is_asked) {
     GPROJT_CHECK(!gproj_mesh_is_boundary_vertex(NULL, 0) && !gproj_mesh_is_boundary_vertex(mesh, -1));
     gproj_mesh_face_area_vector(NULL, 0, area);
     GPROJT_CHECK(area[0] == 0 && area[1] == 0 && area[2] == 0);
+    for (i = 0; i < 2; ++i) {
+        area[2] = 1;
+        gproj_mesh_face_area_vector(mesh, i ? mesh->face_count : -1, area);
+        GPROJT_CHECK(area[2] == 0);
+    }
     gproj_mesh_face_area_vector(mesh, 0, NULL);
     GPROJT_CHECK(gproj_mesh_mean_edge_length(NULL) == 0);
     gproj_mesh_destroy(mesh);

@@ -218,7 +218,10 @@ GPROJT_TEST(walks_around_closed_curves_end) {
 
 GPROJT_TEST(curve_errors) {
     double x[9] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
+    const char *text;
+    gproj_mesh *mesh;
     gproj_error error;
+    int32_t i;
     GPROJT_CHECK(!gproj_curve_create(3, x, false, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
     GPROJT_CHECK(strstr(error.message, "all 3 points") != NULL);
     GPROJT_CHECK(!gproj_curve_create(3, x, true, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
@@ -231,6 +234,20 @@ GPROJT_TEST(curve_errors) {
     GPROJT_CHECK(!gproj_curve_create(INT32_MAX, x, false, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(!gproj_curve_from_loop(NULL, 0, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(!gproj_curve_from_polyline(NULL, 0, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl 1 2 3\nl 3 2\n";
+    mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);
+    GPROJT_REQUIRE(mesh && mesh->loop_count == 1 && mesh->polyline_count == 2);
+    for (i = -1; i < 4; ++i) {
+        gproj_curve *loop = gproj_curve_from_loop(mesh, i, NULL, &error), *line;
+        GPROJT_CHECK((loop != NULL) == (i == 0));
+        GPROJT_CHECK(loop || (error.code == GPROJ_ERROR_ARGUMENT && strstr(error.message, "that has 1 of them")));
+        line = gproj_curve_from_polyline(mesh, i, NULL, &error);
+        GPROJT_CHECK((line != NULL) == (i == 0 || i == 1));
+        GPROJT_CHECK(line || (error.code == GPROJ_ERROR_ARGUMENT && strstr(error.message, "that has 2 of them")));
+        gproj_curve_destroy(loop);
+        gproj_curve_destroy(line);
+    }
+    gproj_mesh_destroy(mesh);
     GPROJT_CHECK(!gproj_surface_create(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
 }
 
@@ -360,6 +377,23 @@ GPROJT_TEST(needles) { /* triangles a million times longer than wide */
         for (k = 0; k < 3; ++k) {
             GPROJT_CHECK(weight[k] >= 0);
             GPROJT_NEAR(weight[0] * x[0][k] + weight[1] * x[1][k] + weight[2] * x[2][k], out[k], 1e-14);
+        }
+    }
+}
+
+/* Over the middle of a triangle, far away from it, the projection is the nearest point; and so it is of a needle. */
+GPROJT_TEST(far_above_triangles) {
+    double wide;
+    int32_t k;
+    for (wide = 1; wide > 1e-7; wide *= 0.1) {
+        double x[3][3] = {{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}}, p[3] = {0.5, 0, 0}, out[3], weight[3];
+        const double *corner[3];
+        x[2][1] = 3 * wide, p[1] = wide;
+        for (k = 0; k < 3; ++k) corner[k] = x[k];
+        for (p[2] = 1e-3; p[2] < 1e5; p[2] *= 1e3) {
+            GPROJT_NEAR(sqrt(gproji_closest_on_triangle(corner, p, out, weight)), p[2], 1e-12 * p[2]);
+            GPROJT_CHECK(fabs(out[0] - 0.5) + fabs(out[1] - wide) + fabs(out[2]) < 1e-12 * fmax(p[2], 1) / wide);
+            GPROJT_NEAR(weight[2], 1.0 / 3, 1e-12 * fmax(p[2], 1) / wide);
         }
     }
 }
@@ -600,6 +634,7 @@ int main(void) {
     GPROJT_RUN(curves_from_meshes);
     GPROJT_RUN(surfaces_against_brute_force);
     GPROJT_RUN(needles);
+    GPROJT_RUN(far_above_triangles);
     GPROJT_RUN(normals_of_a_pyramid);
     GPROJT_RUN(smooth_normals);
     GPROJT_RUN(faces_that_are_not_convex);

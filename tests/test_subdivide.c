@@ -562,6 +562,10 @@ GPROJT_TEST(stencils_compose) {
         GPROJT_CHECK(!memcmp(fine[3]->position + 3 * corner, mesh->position + 3 * corner, 3 * sizeof(double)));
         wrong = gproj_stencil_multiply(step[1], step[2], NULL, &error);
         GPROJT_CHECK(!wrong && error.code == GPROJ_ERROR_ARGUMENT && strstr(error.message, "give the fine one first"));
+        for (level = 0; level < 2; ++level) {
+            wrong = gproj_stencil_multiply(level ? step[1] : NULL, level ? NULL : step[1], NULL, &error);
+            GPROJT_CHECK(!wrong && error.code == GPROJ_ERROR_ARGUMENT && strstr(error.message, "is NULL"));
+        }
         for (level = 1; level <= 3; ++level) {
             gproj_mesh_destroy(fine[level]);
             gproj_stencil_destroy(whole[level]);
@@ -838,16 +842,24 @@ GPROJT_TEST(refusals) {
     gprojt_refused(mesh, &options, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "level 13 would have");
     options = none, options.stencil_level = 1;
     gprojt_refused(mesh, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "from level 1 to level 1");
+    options.stencil_level = -1;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "from level -1 to level 1");
     options = none, options.scheme = GPROJ_LOOP;
     gprojt_refused(mesh, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, 2, "face 2 has 4 corners");
     options = none, options.creases = edges, options.crease_count = 2;
     gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, 99, "crease 1 is edge 99");
+    edges[1] = -1;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, -1, "crease 1 is edge -1");
     edges[1] = 5, options.sharpness = sharpness;
     gprojt_refused(mesh, &options, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, 5, "sharpness of edge 5 is -1");
     sharpness[1] = NAN;
     gprojt_refused(mesh, &options, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, 5, "sharpness of edge 5 is");
     options = none, options.corners = corners, options.corner_count = 2;
     gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, -1, "corner 1 is vertex -1");
+    corners[1] = mesh->vertex_count;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_VERTEX, mesh->vertex_count, "corner 1 is vertex 20");
+    options = none, options.corner_count = -1;
+    gprojt_refused(mesh, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "0 creases and -1 corners");
     options = none, options.crease_count = -3;
     gprojt_refused(mesh, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "-3 creases");
     mesh->position[7] = NAN;
