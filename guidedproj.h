@@ -1502,7 +1502,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
-   face's area, and a step that would take most of a face's area is shortened. */
+   face's area, and a step that would take most of a face's area is shortened. Allow more than 50, and a mesh that is
+   spoiled at the minimum, or when half of them are over, gets the group "corners" for all its edges and corners; it is
+   led to a minimum with these, and lets them go only if the constraints do not hold at the end. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
 /* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as
@@ -1529,8 +1531,9 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
    matrix, which the solve need not repeat, but takes neither the factor nor the arrays of iterations. The peak is
    normally 0.7 to 1 of this number, which is the sum for the rows as they are, with 1/32 more for small work, or with
    1/4 more for rows that come in on the way (of the guard where steps are found by multipliers, of corners in smooth
-   solves); compression that shapes resist has been seen to take 1.2. The mesh, curves and surfaces of yours are not in
-   it. 0 after an error (NULL: not told): no solve is on, a callback asks, no memory for the analysis. */
+   solves); compression that shapes resist has been seen to take 1.2, and nearest meshes that get safeguards 1.7. The
+   mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a callback asks,
+   no memory for the analysis. */
 GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
@@ -10418,6 +10421,7 @@ typedef struct gproji_hooks {
     void (*settle)(void *user, double *x); /* gives local unknowns (normals) their best values at x */
     bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
     bool (*wake)(void *user); /* gives those rows, at the x before; are there new ones? */
+    bool (*mend)(void *user); /* nearest: gives safeguards rows if the mesh is spoiled; are there new ones? */
     bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
     void *user;
 } gproji_hooks;
@@ -11083,6 +11087,23 @@ GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     return woken;
 }
 
+/* All multipliers are 0. Asks for all arrays even if one is refused, see gproji_foretell. */
+GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
+    bool done;
+    int32_t i;
+    if (!s->vector.sum) s->vector.sum = (double *)gproji_pool_take(&s->taken, s->variable_count, sizeof *s->vector.sum);
+    done = s->vector.sum != NULL;
+    for (i = 0; i < s->group_count; ++i) {
+        gproji_group *g = &s->group[i];
+        size_t rows = (size_t)g->row_count;
+        if (!g->multiplier)
+            g->multiplier = (gproji_multiplier *)gproji_pool_take(&s->taken, g->row_count, sizeof *g->multiplier);
+        done = done && g->multiplier;
+        if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
+    }
+    return done;
+}
+
 /* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is
    the beginning of the step, and s->vector.saved afterwards too. Returns whether rows were compiled; there may be an
    error. */
@@ -11090,7 +11111,8 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
     gproji_system_forget(s);
-    if (gproji_compile(s, false) != GPROJ_OK) return true;
+    if (gproji_compile(s, loop->options.nearest) != GPROJ_OK) return true;
+    if (loop->options.nearest && !gproji_start_multipliers(s)) gproji_fail_memory(&s->error);
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
     gproji_pass_over(s, 0, gproji_save_task);
@@ -11514,7 +11536,8 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
    - x + t dx is led back to phi = 0 by steps orthogonal to that set, with the same factor;
    - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian and turns no face over.
    The first iteration is a guided projection and the last ones are plain projections, so that everything holds however
-   far the slides came. A small s keeps x close to the set, a large one lets a step go farther. */
+   far the slides came; safeguards yield if they are in the way there. A small s keeps x close to the
+   set, a large one lets a step go farther. */
 
 static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
 static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
@@ -11522,6 +11545,7 @@ static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_left = 0.1;      /* of the residual, in a last projection that need not yield */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
@@ -11546,23 +11570,6 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
         if (g->role == GPROJI_GUARD && !s->progress.tangential) g->weight = 0;
         if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
     }
-}
-
-/* All multipliers are 0. Asks for all arrays even if one is refused, see gproji_foretell. */
-GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
-    bool done;
-    int32_t i;
-    if (!s->vector.sum) s->vector.sum = (double *)gproji_pool_take(&s->taken, s->variable_count, sizeof *s->vector.sum);
-    done = s->vector.sum != NULL;
-    for (i = 0; i < s->group_count; ++i) {
-        gproji_group *g = &s->group[i];
-        size_t rows = (size_t)g->row_count;
-        if (!g->multiplier)
-            g->multiplier = (gproji_multiplier *)gproji_pool_take(&s->taken, g->row_count, sizeof *g->multiplier);
-        done = done && g->multiplier;
-        if (g->multiplier) memset(g->multiplier, 0, rows * sizeof *g->multiplier);
-    }
-    return done;
 }
 
 /* Does the row have a multiplier now? */
@@ -11849,6 +11856,9 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
         /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
+        if (n > last + 1 && loop->standing.residual > gproji_nearest_left * loop->watch.fallen)
+            gproji_let_safeguards_yield(loop);
+        loop->watch.fallen = loop->standing.residual;
         moved = n > guided && n <= last && gproji_slide(loop);
         if (!moved && (n <= guided || !gproji_holds(loop))) {
             gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
@@ -11866,6 +11876,13 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
             s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
         }
         gproji_see_nearest(loop);
+        /* 3. Safeguards, if the mesh is spoiled at a minimum or in the second half. */
+        if (n < last && (n >= half || gproji_is_nearest(loop)) && loop->hooks.mend &&
+            loop->hooks.mend(loop->hooks.user)) {
+            gproji_place_woken(loop, true);
+            if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
+            gproji_see_nearest(loop);
+        }
         if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         if (s->changed) gproji_see_nearest(loop);
     }
@@ -11929,7 +11946,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     }
     if (!loop->begun) {
         s->progress.settling = 0;
-        s->yield = GPROJI_YIELD_SLOWLY;
+        s->yield = nearest ? GPROJI_YIELD_FLOOR : GPROJI_YIELD_SLOWLY;
         if (nearest) {
             gproji_see_nearest(loop);
         } else {
@@ -18681,8 +18698,8 @@ struct gproji_part {
 
 /* A form's forces and loads: see statics. */
 typedef struct gproji_statics {
-    gproji_pool pool;  /* has all arrays */
-    gproj_loads loads; /* its arrays are copies */
+    gproji_pool pool;   /* has all arrays */
+    gproj_loads loads;  /* its arrays are copies */
     uint8_t *axes;      /* per vertex: the axes along which it is in equilibrium; 0: pinned */
     int32_t *force;     /* per edge: the force's variable; -1: none */
     int32_t *first_row; /* per vertex: in the group of equilibrium */
@@ -22124,7 +22141,10 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_bend_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
-   it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve. */
+   it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve.
+
+   Solves for the nearest mesh go without them, until the mesh is spoiled: then all edges and, in planar faces, all
+   corners along m0 get rows that ask for their floors (gproji_mend_corners). */
 
 static const double gproji_corner_weight = 0.3;
 static const double gproji_corner_wanted = 0.3;  /* part of its size that the row of a corner or edge asks for, */
@@ -22360,6 +22380,24 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
     return woken;
+}
+
+/* For a solve for the nearest mesh: if that is spoiled now, lets all edges act and, in planar faces, all corners along
+   the first normals. Returns whether there are new ones. */
+GPROJI_INTERNAL bool gproji_mend_corners(void *user) {
+    const gproj_form *form = (const gproj_form *)user;
+    const gproji_part *part = gproji_acting_corners(form);
+    bool planar = gproji_is_on(form, form->planarity);
+    const gproji_corners *guard;
+    gproji_damages d;
+    int32_t e, h;
+    if (!part) return false;
+    guard = gproji_corners_of(part);
+    gproji_find_damages(form->mesh, gproj_system_values(form->system), form->original, &d);
+    if (gproji_spoiled_of(&d).total == 0) return false;
+    for (e = 0; e < form->mesh->edge_count; ++e) guard->marked[guard->edges + e] = guard->length[e] > 0;
+    for (h = 0; h < form->mesh->halfedge_count; ++h) guard->marked[2 * h + 1] = planar && guard->size[h] > 0;
+    return gproji_wake_corners(user);
 }
 
 /* Has a corner become small, and lost most of the area in the step to x, or an edge the length? */
@@ -23014,7 +23052,10 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         length = strlen(text);
         between = ", ";
     }
-    if (!known && length + sizeof help <= size) gproji_append(text, size, length, help, sizeof help - 1);
+    if (!known && form->solve.loop.options.nearest && form->solve.loop.iterations <= GPROJI_SAFE_MOST)
+        gproji_format(text + length, size - length, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
+    else if (!known && length + sizeof help <= size)
+        gproji_append(text, size, length, help, sizeof help - 1);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
@@ -23272,7 +23313,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (part)
         gproj_system_set_schedule(form->system, part->group, gproj_keep(metric && forces ? gproji_metric_force : 0));
     gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
-    gproji_set_corners(form, smooth && !options->skip_guard);
+    gproji_set_corners(form, (smooth || (nearest && iterations > GPROJI_SAFE_MOST)) && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
@@ -23323,6 +23364,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
+    if (nearest && gproji_own_part(form, GPROJI_OWN_CORNERS)) hooks->mend = gproji_mend_corners;
     /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold
        with whole faces where it does not with straight steps. */
     if (smooth && (loop->earlier > 0 || gproji_is_on(form, form->planarity))) hooks->settle = gproji_settle_form;

@@ -321,6 +321,45 @@ GPROJT_TEST(resumed_with_forces_that_bend) {
     free(state);
 }
 
+/* The nearest flat mesh is spoiled and gets safeguards on the way: as in one go, before they act and after, and when they
+   yield at the end because nothing holds with them (the second mesh). */
+GPROJT_TEST(resumed_while_it_is_mended) {
+    static const int shape[2] = {0, 3};
+    int32_t k, i, at;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(shape[i], 8, 0.06, 5);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options = gprojt_nearest_or_not(1);
+        double *start = gprojt_keep(mesh), *end;
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK(gproj_solve(form, 60, &options).iterations > 45);
+        end = gprojt_keep(mesh);
+        for (at = 10; at < 60; at += 12) {
+            gproj_mesh *other = gprojt_noisy(shape[i], 8, 0.06, 5);
+            gproj_form *fresh = gproj_form_create(other, NULL);
+            uint8_t *state;
+            size_t size;
+            gproj_add_planarity(fresh, 1);
+            gprojt_put_back(mesh, start);
+            GPROJT_REQUIRE(gproj_solve_begin(form, 60, &options, NULL));
+            for (k = 0; k < at && gproj_solve_is_on(form); ++k) gproj_solve_advance(form, 0);
+            state = gprojt_save(form, &size);
+            while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+            GPROJT_CHECK(gprojt_unmoved(mesh, end));
+            GPROJT_CHECK(gproj_state_restore(fresh, state, size, NULL) == GPROJ_OK);
+            gprojt_check_same_form(fresh, state, size);
+            while (gproj_solve_is_on(fresh)) gproj_solve_advance(fresh, 0);
+            GPROJT_CHECK(gprojt_unmoved(other, end));
+            free(state);
+            gproj_form_destroy(fresh);
+            gproj_mesh_destroy(other);
+        }
+        free(start), free(end);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Undo and redo: weights, targets, forces and positions are those of the state, and what follows is what followed. */
 GPROJT_TEST(undo_and_redo) {
     gproj_mesh *mesh = gprojt_roof(6, 0.05);
@@ -881,6 +920,7 @@ int main(void) {
     GPROJT_RUN(frames_follow_targets);
     GPROJT_RUN(resumed_to_the_same_bytes);
     GPROJT_RUN(resumed_with_forces_that_bend);
+    GPROJT_RUN(resumed_while_it_is_mended);
     GPROJT_RUN(undo_and_redo);
     GPROJT_RUN(every_damage_is_seen);
     GPROJT_RUN(states_cut_short);
