@@ -11545,7 +11545,7 @@ static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
-static const double gproji_nearest_left = 0.1;      /* of the residual, in a last projection that need not yield */
+static const double gproji_nearest_left = 0.5;      /* of the residual, in a last projection that need not yield */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
