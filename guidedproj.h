@@ -2251,7 +2251,8 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     /* 2. Is it in [1, 10) already (for the shortest text: once rounded up)? */
     side = limit ? gproji_big_compare(&r, &s) : gproji_big_compare_sum(&r, &m, up, &s);
     *point = k + 1;
-    if (side < 0) { /* rounded up to 10^k is only one double, whose fraction is even: below 10^23 = 5^23 2^23, 54 bits */
+    if (side <
+        0) { /* rounded up to 10^k is only one double, whose fraction is even: below 10^23 = 5^23 2^23, 54 bits */
         *point = k;
         gproji_big_multiply(&r, 10, 0);
         gproji_big_multiply(&m, 10, 0);
@@ -13802,8 +13803,7 @@ typedef struct gproji_writer {
 } gproji_writer;
 
 GPROJI_INTERNAL void gproji_flush(gproji_writer *writer) {
-    if (!writer->failed && !writer->write(writer->user, writer->buffer, writer->length))
-        writer->failed = true;
+    if (!writer->failed && !writer->write(writer->user, writer->buffer, writer->length)) writer->failed = true;
     writer->length = 0;
 }
 
@@ -17429,7 +17429,7 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
     while (p->rows < 0) { /* thinnest strips grow first, while e_j >= 1 allows */
         for (best = -1, i = 0; i < n; ++i) {
             int32_t before = (i + n - 1) % n, after = (i + 1) % n; /* differ: two sides have rows >= 0 */
-            if (i == 1 || i == n - 1) continue; /* beside side 0 */
+            if (i == 1 || i == n - 1) continue;                    /* beside side 0 */
             if (rest[before] < 2 || rest[after] < 2) continue;
             if (best < 0 || p->strip[i] < p->strip[best]) best = i;
         }
@@ -22395,8 +22395,10 @@ GPROJI_INTERNAL bool gproji_mend_corners(void *user) {
     guard = gproji_corners_of(part);
     gproji_find_damages(form->mesh, gproj_system_values(form->system), form->original, &d);
     if (gproji_spoiled_of(&d).total == 0) return false;
-    for (e = 0; e < form->mesh->edge_count; ++e) guard->marked[guard->edges + e] = guard->length[e] > 0;
-    for (h = 0; h < form->mesh->halfedge_count; ++h) guard->marked[2 * h + 1] = planar && guard->size[h] > 0;
+    for (e = 0; e < form->mesh->edge_count; ++e)
+        guard->marked[guard->edges + e] = guard->length[e] > 0 && !gproji_corner_acts_now(part, guard->edges + e);
+    for (h = 0; planar && h < form->mesh->halfedge_count; ++h)
+        guard->marked[2 * h + 1] = guard->size[h] > 0 && !gproji_corner_acts_now(part, 2 * h + 1);
     return gproji_wake_corners(user);
 }
 

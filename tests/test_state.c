@@ -334,7 +334,7 @@ GPROJT_TEST(resumed_while_it_is_mended) {
         gproj_add_planarity(form, 1);
         GPROJT_CHECK(gproj_solve(form, 60, &options).iterations > 45);
         end = gprojt_keep(mesh);
-        for (at = 10; at < 60; at += 12) {
+        for (at = 10; at < 60; at += 22) {
             gproj_mesh *other = gprojt_noisy(shape[i], 8, 0.06, 5);
             gproj_form *fresh = gproj_form_create(other, NULL);
             uint8_t *state;
