@@ -11938,12 +11938,9 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool changed = s->changed, nearest = loop->options.nearest;
     s->progress.tangential = nearest;
-    if (nearest && (!loop->begun || !s->vector.sum)) { /* a solve of the system in between may have taken them */
-        if (!gproji_start_multipliers(s)) {
-            gproji_fail_memory(&s->error);
-            return;
-        }
-        changed = true;
+    if (nearest && (!loop->begun || !s->vector.sum) && !gproji_start_multipliers(s)) { /* see gproj_system_solve */
+        gproji_fail_memory(&s->error);
+        return;
     }
     if (!loop->begun) {
         s->progress.settling = 0;
@@ -12014,7 +12011,9 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
 
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
-    if (gproji_begin_loop(&loop, s, iterations, options)) gproji_run(&loop, -1);
+    if (!gproji_begin_loop(&loop, s, iterations, options)) return loop.result;
+    gproji_run(&loop, -1);
+    s->changed = true; /* for the solve of a form that goes on after this one, which may have taken its multipliers */
     return loop.result;
 }
 

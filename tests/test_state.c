@@ -227,6 +227,35 @@ GPROJT_TEST(frames_follow_targets) {
     gproj_mesh_destroy(mesh);
 }
 
+/* The system is solved for itself between two frames, when the constraints hold: the next frame sees where it is now. */
+GPROJT_TEST(solved_between_frames) {
+    static const int32_t corner = 0;
+    int nearest;
+    for (nearest = 0; nearest < 2; ++nearest) {
+        gproj_solve_options options = gprojt_nearest_or_not(nearest);
+        gproj_mesh *mesh = gprojt_roof(6, 0.08);
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+        gproj_system *s = gproj_form_system(form);
+        gproj_result result;
+        double *start = gprojt_keep(mesh);
+        int32_t v;
+        GPROJT_CHECK(gproj_solve_begin(form, 100, &options, NULL));
+        do result = gproj_solve_advance(form, 0);
+        while (gproj_solve_is_on(form) && !(result.residual <= result.tolerance && result.optimality <= 1e-6));
+        GPROJT_REQUIRE(gproj_solve_is_on(form));
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) gproj_system_values(s)[v] += 0.05 * sin(7.0 * v);
+        GPROJT_CHECK(gproj_system_solve(s, 2, NULL).residual > 1e-8);
+        do result = gproj_solve_advance(form, 0);
+        while (gproj_solve_is_on(form));
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality <= 1e-6);
+        GPROJT_CHECK(gprojt_far(mesh->position + 3 * corner, start + 3 * corner) < 1e-11);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).planarity_max < 1e-11);
+        free(start);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- states -- */
 
 /* Goes on to the end. */
@@ -918,6 +947,7 @@ int main(void) {
     GPROJT_RUN(frames_can_be_left);
     GPROJT_RUN(failures_end_frames);
     GPROJT_RUN(frames_follow_targets);
+    GPROJT_RUN(solved_between_frames);
     GPROJT_RUN(resumed_to_the_same_bytes);
     GPROJT_RUN(resumed_with_forces_that_bend);
     GPROJT_RUN(resumed_while_it_is_mended);
