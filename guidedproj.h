@@ -4578,7 +4578,7 @@ GPROJI_INTERNAL void gproji_nd_choose_thresholds(gproji_nd *nd, const gproji_nd_
     most = gproji_max(1, gproji_min(most, GPROJI_ND_THRESHOLDS));
     halo[0] = 0, halo[1] = nd->halo.weight;
     memset(nearby, 0, (size_t)cut->range + 1);
-    for (t = 1; t < cut->range && 10 * below <= 7 * nd->weight; ++t) {
+    for (t = 1; 10 * below <= 7 * nd->weight; ++t) { /* beyond the last threshold all is below */
         double s, own;
         below += cut->sum[t - 1];
         halo[0] += nd->profile.halo_low[t], halo[1] -= nd->profile.halo_high[t];
@@ -4955,9 +4955,7 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
     above = nd->weight - below - inside;
     for (;;) {
         bool down = below > above;
-        int32_t more;
-        if (down ? from[0] <= 1 : from[1] >= cut->range - 1) break;
-        more = cut->sum[down ? from[0] - 1 : from[1]];
+        int32_t more = cut->sum[down ? from[0] - 1 : from[1]];
         if (inside + more > most || (down ? below : above) - more < 0.24 * nd->weight) break;
         inside += more;
         if (down)
@@ -10301,7 +10299,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     gproji_schur *d = &s->schur;
     gproj_cholesky *c = s->cholesky;
     if (s->wide.acting < c->batch) {
-        if (s->wide.acting > 0) gproji_schur_border(s, c->solution);
+        gproji_schur_border(s, c->solution);
         c->sides = 1;
         gproji_cholesky_finish(c, d->side);
     } else {

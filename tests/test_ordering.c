@@ -405,6 +405,22 @@ GPROJT_TEST(ordering_of_large_graphs) {
     }
 }
 
+/* A node next to all that is the heaviest one, too, goes last and counts for nothing before. */
+GPROJT_TEST(ordering_of_heavy_hubs) {
+    graph g = make(HUB, 3600);
+    int32_t *order = (int32_t *)malloc((size_t)g.nodes * sizeof(int32_t));
+    gproji_heap heap = gproji_heap_of(NULL);
+    double amd;
+    g.weight[g.nodes - 1] = 8;
+    graph_weigh(&g);
+    GPROJT_REQUIRE(gproji_dissect(&heap, &g.view, g.total, order));
+    GPROJT_CHECK(order[g.nodes - 1] == g.nodes - 1);
+    amd = analysed(&g, GPROJ_ORDERING_AMD, NULL).flops;
+    GPROJT_CHECK(analysed(&g, GPROJ_ORDERING_DISSECTION, NULL).flops < amd);
+    free(order);
+    graph_free(&g);
+}
+
 /* In units of the cube of a side's variables, a grid's factorisation takes about 17, whatever its size (George 1973: 20
    with cuts along the axes), that of a torus, whose first cut needs two lines, less than three times as many. */
 GPROJT_TEST(ordering_of_grids) {
@@ -934,6 +950,7 @@ int main(void) {
     GPROJT_RUN(ordering_of_graphs);
     GPROJT_RUN(ordering_of_layers);
     GPROJT_RUN(ordering_of_large_graphs);
+    GPROJT_RUN(ordering_of_heavy_hubs);
     GPROJT_RUN(ordering_of_grids);
     GPROJT_RUN(dissection_separates);
     GPROJT_RUN(dissection_flows);
