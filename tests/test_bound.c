@@ -276,22 +276,25 @@ GPROJT_TEST(distant_bounds_do_nothing) {
     gproj_system_destroy(without);
 }
 
-/* The tangent of a convex row says "violated" long before the row does: |x| >= 0.01 on the way from 1 to 0.1. */
+/* The tangent of a convex row says "violated" long before the row does: |x| >= 0.01 on the way from 1 to 0.1, and to a
+   place where it just holds. */
 GPROJT_TEST(tangents_of_convex_rows) {
-    static const double x[2] = {1, 0};
-    gproj_system *s = gprojt_system(NULL, 2, x);
+    static const double x[2] = {1, 0}, places[2] = {0.1, 0.0101};
     gproj_term square[2];
-    gproj_result result;
-    int32_t k;
+    int32_t i, k;
     for (k = 0; k < 2; ++k) square[k] = gprojt_term(k, k, 50);
-    gprojt_add_group(s, "away", GPROJ_BOUND, 1);
-    gproj_system_add_row(s, 0, 2, square, -0.005, 0);
-    gprojt_add_group(s, "place", GPROJ_CONSTRAINT, 1);
-    gprojt_add_linear(s, 1, 0, 1, -0.1, 0);
-    result = gproj_system_solve(s, 9, NULL);
-    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped == 0);
-    GPROJT_NEAR(gproj_system_values(s)[0], 0.1, 1e-13);
-    gproj_system_destroy(s);
+    for (i = 0; i < 2; ++i) {
+        gproj_system *s = gprojt_system(NULL, 2, x);
+        gproj_result result;
+        gprojt_add_group(s, "away", GPROJ_BOUND, 1);
+        gproj_system_add_row(s, 0, 2, square, -0.005, 0);
+        gprojt_add_group(s, "place", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 1, 0, 1, -places[i], 0);
+        result = gproj_system_solve(s, 9, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.damped == 0);
+        GPROJT_NEAR(gproj_system_values(s)[0], places[i], 1e-13);
+        gproj_system_destroy(s);
+    }
 }
 
 /* A bound lets go of what it has held: first the wish draws against it, then away. */

@@ -71,6 +71,7 @@ GPROJT_TEST(sphere_and_planes) {
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations <= 8 && result.damped == 0);
     GPROJT_CHECK(result.residual <= 1e-13 && result.iterations == watch.count);
     GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance") != NULL);
+    GPROJT_CHECK(result.spoiled.total == 0 && result.spoiled.place == GPROJ_PLACE_NONE && result.spoiled.element == -1);
     GPROJT_NEAR(gproj_system_values(s)[2], 1, 1e-12);
     GPROJT_NEAR(gproj_system_values(s)[0] + gproj_system_values(s)[1], 2, 1e-12);
     gprojt_check_quadratic(&watch);
@@ -729,6 +730,11 @@ GPROJT_TEST(a_group_goes_and_comes_back) {
     watch.change_at = 0;
     gproj_system_solve(s, 1, &options);
     GPROJT_CHECK(calls == before + 2);
+    before = calls; /* one that stays off asks for no refresh of the others */
+    gproj_system_set_schedule(s, 0, gprojt_schedule(0, 0, 0));
+    options = gprojt_watched(&watch);
+    gproj_system_solve(s, 1, &options);
+    GPROJT_CHECK(calls == before + 2);
     gproj_system_destroy(s);
 }
 
@@ -788,7 +794,7 @@ GPROJT_TEST(tolerance_has_an_upper_limit) {
     static const double far[3] = {1e14, 1e155, -1e300};
     int i, how;
     for (i = 0; i < 3; ++i)
-        for (how = 0; how < 4; ++how) {
+        for (how = 0; how < 5; ++how) {
             double x[2] = {2, 0};
             gproj_system *s;
             gproj_result result;
@@ -800,9 +806,10 @@ GPROJT_TEST(tolerance_has_an_upper_limit) {
             gproj_system_add_row(s, 0, 1, &square, -1, 0);
             if (how == 1 || how == 2) gprojt_add_linear(s, 1, 1, 1, -far[i], 0);
             if (how == 3) gproj_system_add_row(s, 1, 1, &product, 0, 0);
+            if (how == 4) gprojt_add_linear(s, 0, 1, 1, -far[i], 0); /* after another row of its group */
             result = gproj_system_solve(s, 30, NULL);
             GPROJT_CHECK(result.tolerance == (how == 3 && result.outcome != GPROJ_CONVERGED ? 1e-8 : 1e-13));
-            GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (how < 3));
+            GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (how != 3));
             GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || fabs(gproj_system_values(s)[0] - 1) < 1e-12);
             gproj_system_destroy(s);
         }
@@ -1165,7 +1172,9 @@ GPROJT_TEST(metric_comes_back) {
     static const double start[2] = {3, 1};
     gproj_system *s = gprojt_system(NULL, 2, 1, start);
     gproj_term product = gprojt_term(0, 1, 1), linear[2];
+    gproji_course course;
     gproji_loop loop;
+    double value;
     int32_t i;
     gprojt_add_group(s, "product", GPROJ_CONSTRAINT, 1);
     gprojt_add_group(s, "metric", GPROJ_WISH, 0.1);
@@ -1188,6 +1197,9 @@ GPROJT_TEST(metric_comes_back) {
     GPROJT_CHECK(s->group[1].weight == 0.05);
     GPROJT_CHECK(s->group[1].local.gradient[0] == 1 && s->group[1].local.gradient[1] == 1);
     GPROJT_CHECK(gproji_find_step(&loop, 1e-3) && gproji_take_step(s, 0) == 0);
+    value = (3 + s->vector.step[0]) * (1 + s->vector.step[1]) - 2;
+    gproji_merit_along(s, &course); /* it measures the step, and has no part in the merit along it */
+    GPROJT_NEAR(gproji_merit_at(&course, 1), value * value, 1e-14);
     gproj_system_destroy(s);
 }
 

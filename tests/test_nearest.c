@@ -213,6 +213,23 @@ GPROJT_TEST(weights_are_ratios) {
     GPROJT_CHECK(gprojt_far(found[0], found[1]) < 1e-9 && gprojt_far(found[0], found[2]) == 0);
 }
 
+/* At the start nothing is gained and the optimality is 1, however large the rows' coefficients are. */
+GPROJT_TEST(optimality_has_no_unit) {
+    static const double sizes[] = {0.1, 1, 30};
+    int i;
+    int32_t k;
+    for (i = 0; i < 3; ++i) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_system_add_variables(s, 3, 1, NULL);
+        gprojt_add_group(s, "wish", GPROJ_WISH, 0.7);
+        for (k = 0; k < 3; ++k) gprojt_add_linear(s, 0, k, sizes[i], -1 - k, k);
+        gprojt_add_group(s, "constraint", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 1, 0, 1, -0.5, 0);
+        GPROJT_NEAR(gprojt_solve_nearest(s, 0).optimality, 1, 1e-15);
+        gproj_system_destroy(s);
+    }
+}
+
 /* -- meshes -- */
 
 typedef void (*gprojt_asks)(gproj_form *form);
@@ -617,6 +634,7 @@ int main(void) {
     GPROJT_RUN(global_rows);
     GPROJT_RUN(one_side_only);
     GPROJT_RUN(weights_are_ratios);
+    GPROJT_RUN(optimality_has_no_unit);
     GPROJT_RUN(moves_less_than_projection);
     GPROJT_RUN(spoiled_meshes_are_mended);
     GPROJT_RUN(safeguards_yield_to_constraints);

@@ -145,6 +145,19 @@ GPROJT_TEST(read_ties) { /* midpoints of random neighbours, and one digit more *
     }
 }
 
+GPROJT_TEST(products_of_64_bits) { /* against long multiplication by bits */
+    uint64_t seed = 8;
+    int i, k;
+    for (i = 0; i < 300; ++i) {
+        uint64_t a = gprojt_random(&seed) >> (i % 5 * 13), b = gprojt_random(&seed) | 1, low = 0, high = 0, got;
+        for (k = 63; k >= 0; --k) {
+            high = high << 1 | low >> 63, low <<= 1;
+            if (b >> k & 1) low += a, high += low < a;
+        }
+        GPROJT_CHECK(gproji_multiply_64(a, b, &got) == high && got == low);
+    }
+}
+
 GPROJT_TEST(read_stops_where_the_number_ends) {
     static const struct {
         const char *text;
@@ -164,6 +177,7 @@ GPROJT_TEST(read_stops_where_the_number_ends) {
         double value = 0;
         GPROJT_CHECK(gproj_number_read("123456", 3, &value) == 3 && value == 123);
         GPROJT_CHECK(gproj_number_read("1e5", 2, &value) == 1 && value == 1);
+        GPROJT_CHECK(gproj_number_read("1e57", 3, &value) == 3 && value == 1e5);
         GPROJT_CHECK(gproj_number_read(NULL, 3, &value) == 0);
         GPROJT_CHECK(gproj_number_read("1", 1, NULL) == 0);
     }
@@ -361,6 +375,7 @@ GPROJT_TEST(the_first_error_stays) {
 int main(void) {
     GPROJT_RUN(read_hard_cases);
     GPROJT_RUN(read_ties);
+    GPROJT_RUN(products_of_64_bits);
     GPROJT_RUN(read_stops_where_the_number_ends);
     GPROJT_RUN(infinity_and_nan);
     GPROJT_RUN(write_known);

@@ -244,6 +244,29 @@ GPROJT_TEST(creeping_corners_ask_for_less) {
     GPROJT_CHECK(iterations <= 1825);
 }
 
+/* How far the residual has fallen is told over 6 iterations: one is often a bad one. */
+GPROJT_TEST(creeping_takes_iterations) {
+    gproj_solve_options options = gprojt_smooth();
+    gproj_mesh *mesh = gprojt_twisted(6, 0.6);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double watched[6], fallen = HUGE_VAL;
+    int32_t last = 0, looks = 0, n = 0;
+    gprojt_add_planar_fixed(form, NULL);
+    GPROJT_REQUIRE(gproj_solve_begin(form, 60, &options, NULL));
+    while (gproj_solve_is_on(form)) {
+        gproj_solve_advance(form, 0);
+        gprojt_inside_watch(form, false, watched);
+        if (watched[1] != fallen) {
+            GPROJT_CHECK(n - last >= 6);
+            last = n, fallen = watched[1], looks++;
+        }
+        n++;
+    }
+    GPROJT_CHECK(looks >= 3);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 typedef struct gprojt_attempts {
     int32_t last, calls, cancel_at;
     bool ascending;
@@ -803,6 +826,7 @@ int main(void) {
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
+    GPROJT_RUN(creeping_takes_iterations);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(later_attempts_end_early);
