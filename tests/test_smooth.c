@@ -244,10 +244,10 @@ GPROJT_TEST(creeping_corners_ask_for_less) {
     GPROJT_CHECK(iterations <= 1825);
 }
 
-/* How far the residual has fallen is told over 6 iterations: one is often a bad one. */
+/* How far the residual has fallen is told over 6 iterations: one is often a bad one. Corners ask for less near the end only. */
 GPROJT_TEST(creeping_takes_iterations) {
     gproj_solve_options options = gprojt_smooth();
-    gproj_mesh *mesh = gprojt_twisted(6, 0.6);
+    gproj_mesh *mesh = gprojt_twisted(5, 0.6);
     gproj_form *form = gproj_form_create(mesh, NULL);
     double watched[6], fallen = HUGE_VAL;
     int32_t last = 0, looks = 0, n = 0;
@@ -257,7 +257,7 @@ GPROJT_TEST(creeping_takes_iterations) {
         gproj_solve_advance(form, 0);
         gprojt_inside_watch(form, false, watched);
         if (watched[1] != fallen) {
-            GPROJT_CHECK(n - last >= 6);
+            GPROJT_CHECK(n - last >= 6 && (watched[0] != 1 || watched[1] <= 0.02));
             last = n, fallen = watched[1], looks++;
         }
         n++;

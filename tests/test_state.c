@@ -884,6 +884,78 @@ GPROJT_TEST(states_of_other_variables) {
     free(state);
 }
 
+static void gprojt_leave_rows(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    (void)user, (void)s, (void)group, (void)progress;
+}
+
+/* Forms whose only difference is one property of a group, an element, or how terms are shared out among rows. */
+GPROJT_TEST(states_of_other_groups) {
+    static const struct {
+        const char *name;
+        gproj_kind kind;
+        gproj_place place;
+        bool global, refresh;
+        int32_t element, terms; /* of the first row; the second has the others of 3 */
+    } kinds[] = {{"own", GPROJ_WISH, GPROJ_PLACE_VERTEX, false, false, 0, 1},
+                 {"one", GPROJ_WISH, GPROJ_PLACE_VERTEX, false, false, 0, 1},
+                 {"own", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, false, false, 0, 1},
+                 {"own", GPROJ_WISH, GPROJ_PLACE_FACE, false, false, 0, 1},
+                 {"own", GPROJ_WISH, GPROJ_PLACE_VERTEX, true, false, 0, 1},
+                 {"own", GPROJ_WISH, GPROJ_PLACE_VERTEX, false, true, 0, 1},
+                 {"own", GPROJ_WISH, GPROJ_PLACE_VERTEX, false, false, 1, 1},
+                 {"own", GPROJ_WISH, GPROJ_PLACE_VERTEX, false, false, 0, 2}};
+    static const gproj_term terms[3] = {{3, -1, 1}, {4, -1, 1}, {8, -1, 1}};
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    uint8_t *state = NULL;
+    size_t size = 0, k;
+    for (k = 0; k < sizeof kinds / sizeof kinds[0]; ++k) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_system *s = gproj_form_system(form);
+        gproj_group group;
+        int32_t g;
+        memset(&group, 0, sizeof group);
+        group.name = kinds[k].name, group.kind = kinds[k].kind, group.place = kinds[k].place;
+        group.global = kinds[k].global, group.schedule = gproj_keep(1);
+        if (kinds[k].refresh) group.refresh = gprojt_leave_rows;
+        g = gproj_system_add_group(s, &group);
+        gproj_system_add_row(s, g, kinds[k].terms, terms, 0, kinds[k].element);
+        gproj_system_add_row(s, g, 3 - kinds[k].terms, terms + kinds[k].terms, 0, 0);
+        if (k == 0) {
+            state = gprojt_save(form, &size);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        } else {
+            gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+        }
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+    free(state);
+}
+
+/* Restored in the same form, a state needs no further memory: what has been analysed is still right. */
+GPROJT_TEST(restored_without_an_analysis) {
+    int design;
+    for (design = 0; design < GPROJT_DESIGNS; ++design) {
+        gproj_mesh *mesh = gprojt_roof(6, 0.08);
+        gproj_form *form = gprojt_design(mesh, design, NULL);
+        uint64_t allocations;
+        uint8_t *state;
+        size_t size;
+        int32_t k;
+        gproj_solve_begin(form, 30, NULL, NULL);
+        for (k = 0; k < 3; ++k) gproj_solve_advance(form, 0);
+        state = gprojt_save(form, &size);
+        gproj_solve_advance(form, 0);
+        GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        allocations = gproj_form_memory(form).allocations;
+        gproj_solve_advance(form, 0);
+        GPROJT_CHECK(gproj_form_memory(form).allocations == allocations);
+        free(state);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 GPROJT_TEST(what_cannot_be_saved) {
     gproj_mesh *mesh = gprojt_roof(3, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
@@ -963,6 +1035,8 @@ int main(void) {
     GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
     GPROJT_RUN(states_of_other_variables);
+    GPROJT_RUN(states_of_other_groups);
+    GPROJT_RUN(restored_without_an_analysis);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(failing_allocations);
     return gprojt_report();
