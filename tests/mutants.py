@@ -35,6 +35,7 @@ ASSIGN = {"=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="}
 TYPES = {"void", "char", "short", "int", "long", "float", "double", "signed", "unsigned", "bool", "size_t", "FILE", "const",
          "struct", "enum", "union", "static", "volatile", "va_list", "int8_t", "uint8_t", "int16_t", "uint16_t", "int32_t",
          "uint32_t", "int64_t", "uint64_t", "uintptr_t", "intptr_t", "ptrdiff_t", "lanes", "mode_t", "register"}
+VARIADIC = {"gproji_format", "gproji_fail", "gproji_refuse", "gproji_stop"}
 # What each sign becomes: (class, other sign).
 CHANGES = {
     "<": [("boundary", "<="), ("negation", ">=")], "<=": [("boundary", "<"), ("negation", ">")],
@@ -132,7 +133,9 @@ class Function:
         for (a, b), (c, d) in zip(ranges, ranges[1:]):
             one, two = self.text(a, b), self.text(c, d)
             if one != two and not (self.kind_of(a, b) == "string" or self.kind_of(c, d) == "string"):
-                self.offer("swap", a, d, f"{two} , {one}", f"(KEY ? {two} : {one}), (KEY ? {one} : {two})")
+                as_one, as_two = ((f"(__typeof__(({x}) + 0))({y})" for x, y in ((one, two), (two, one)))
+                                  if function in VARIADIC else (two, one))  # there a ?: would decide about the type
+                self.offer("swap", a, d, f"{two} , {one}", f"(KEY ? {as_one} : {one}), (KEY ? {as_two} : {two})")
         self.quiet -= macro
 
     def kind_of(self, first, last): return self.tokens[first][0] if last == first + 1 else "several"

@@ -850,6 +850,8 @@ GPROJT_TEST(refusals) {
     gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, 99, "crease 1 is edge 99");
     edges[1] = -1;
     gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, -1, "crease 1 is edge -1");
+    edges[1] = mesh->edge_count; /* one beyond the last */
+    gprojt_refused(mesh, &options, GPROJ_ERROR_INDEX, GPROJ_PLACE_EDGE, mesh->edge_count, "crease 1 is edge");
     edges[1] = 5, options.sharpness = sharpness;
     gprojt_refused(mesh, &options, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, 5, "sharpness of edge 5 is -1");
     sharpness[1] = NAN;
