@@ -198,6 +198,23 @@ GPROJT_TEST(edges_orthogonal_to_a_plane) {
     gproj_mesh_destroy(mesh);
 }
 
+/* An edge that is to be upright says nothing of vertices that it does not have. */
+GPROJT_TEST(only_the_ends_of_edges_move) {
+    static const double up[3] = {0, 0, 1};
+    static const int32_t edge = 41;
+    gproj_mesh *mesh = gprojt_square(0.1, 6);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    double *before = gprojt_keep(mesh);
+    int32_t a = mesh->origin[2 * edge], b = mesh->origin[2 * edge + 1], v;
+    gproj_add_orthogonal_edges(form, up, 1, &edge, 1);
+    GPROJT_CHECK(gproj_solve(form, 12, NULL).outcome == GPROJ_CONVERGED);
+    for (v = 0; v < mesh->vertex_count; ++v)
+        GPROJT_CHECK((gprojt_far(mesh->position + 3 * v, before + 3 * v) > 1e-12) == (v == a || v == b));
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Only its direction counts: with lengths whose squares are beyond all numbers the solve has the same bits. */
 GPROJT_TEST(normals_of_any_length) {
     double places[3][3 * (SIDE + 1) * (SIDE + 1)];
@@ -335,6 +352,7 @@ int main(void) {
     GPROJT_RUN(chosen_vertices);
     GPROJT_RUN(special_sets);
     GPROJT_RUN(edges_orthogonal_to_a_plane);
+    GPROJT_RUN(only_the_ends_of_edges_move);
     GPROJT_RUN(normals_of_any_length);
     GPROJT_RUN(boundary_at_right_angles);
     GPROJT_RUN(lifting);

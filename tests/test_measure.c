@@ -590,6 +590,18 @@ GPROJT_TEST(old_damage_does_not_count) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A corner of a pentagon that goes through two sides crosses them, though the other four are convex. */
+GPROJT_TEST(crossed_pentagons_are_damage) {
+    static const double house[15] = {0, 0, 0, 2, 0, 0, 2, 2, 0, 1, 3, 0, 0, 2, 0};
+    gproj_mesh *mesh = gprojt_polygon(5, house);
+    gproj_spoiled found = gproj_measure_spoiled(mesh, house);
+    GPROJT_CHECK(found.total == 0);
+    mesh->position[9] = 1.5, mesh->position[10] = -1; /* the ridge, down through the floor */
+    found = gproj_measure_spoiled(mesh, house);
+    GPROJT_CHECK(found.crossed == 1 && found.place == GPROJ_PLACE_FACE && found.element == 0);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The short way for convex quads finds the bow-ties that gproj_measure finds. */
 GPROJT_TEST(crossed_faces_as_in_measure) {
     uint64_t seed = 3;
@@ -762,6 +774,7 @@ int main(void) {
     GPROJT_RUN(each_kind_of_damage);
     GPROJT_RUN(damage_begins_where_it_is_said);
     GPROJT_RUN(old_damage_does_not_count);
+    GPROJT_RUN(crossed_pentagons_are_damage);
     GPROJT_RUN(crossed_faces_as_in_measure);
     GPROJT_RUN(planarity_of_each_face);
     GPROJT_RUN(areas_and_edges);

@@ -778,6 +778,7 @@ GPROJT_TEST(refusals) {
     GPROJT_CHECK(!gproj_mesh_vertex_offset(NULL, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(!gproj_mesh_face_offset(NULL, 1, NULL, NULL));
     GPROJT_CHECK(!gproj_mesh_face_offset(mesh, NAN, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_NONE && error.index == -1); /* of no element */
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, INFINITY, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, 1e300, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(!gproj_mesh_support(mesh, other, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
