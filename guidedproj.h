@@ -16068,7 +16068,7 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
             strip.rung[left] = strip.rung[i];
             strip.side[left++] = strip.side[i];
         }
-    } while (left && left < tried);
+    } while (left < tried);
     code = gproji_edit_settle(object, &copy, refusal);
     if (code && error) { /* the rung's reason, in a sentence about the strip */
         gproji_format(message, sizeof message, "the strip of edge %d stays: %s", edge, error->message);
@@ -18069,10 +18069,7 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* other corners only if no reflex one has a cut */
         for (i = 0; i < o->count; ++i) {
             if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
-            for (j = 0; j < o->count; ++j) {
-                int32_t apart = j > i ? j - i : i - j;
-                if (apart > 1 && apart + 1 < o->count) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
-            }
+            for (j = 0; j < o->count; ++j) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
         }
     return best;
 }
@@ -20343,7 +20340,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
                 part->element[part->count++] = h;
             }
             h = gproji_rotate(mesh, h);
-        } while (h != start && gproji_form_ready(form));
+        } while (h != start);
     }
     if (gproji_form_ready(form)) gproji_start_cones(part);
     return gproji_built(form, part->group);
