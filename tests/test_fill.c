@@ -453,6 +453,19 @@ GPROJT_TEST(a_lens_has_four_edges) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A triangle has them, too, two along one side: three are no number that quads can have. */
+GPROJT_TEST(a_triangle_has_four_edges) {
+    gprojt_curve c = gprojt_rose(3, 6, 0.1);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.options.edge_length = 100;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 5));
+    GPROJT_CHECK(info.boundary_count == 4 && info.side_count == 3);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Rings run along the whole boundary, also past corners and where the inside is cut. */
 GPROJT_TEST(rings) {
     static const double L[] = {0, 0, 6, 0, 6, 3, 3, 3, 3, 6, 0, 6};
@@ -737,6 +750,20 @@ GPROJT_TEST(heights_are_harmonic) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Also that of a single vertex inside. */
+GPROJT_TEST(a_single_height_is_harmonic) {
+    gprojt_curve c = gprojt_rose(4, 2, 0.1);
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    int32_t i;
+    for (i = 0; i < 4; ++i) c.edges[i] = 2, c.point[6 * i + 5] = 1; /* amid each side */
+    c.given = true;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh && mesh->vertex_count == 9 && info.boundary_count == 8);
+    GPROJT_NEAR(mesh->position[3 * 8 + 2], 1, 1e-14);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A clockwise curve gives faces that look down. */
 GPROJT_TEST(orientation_is_that_of_the_curve) {
     static const double xy[] = {0, 0, 0, 2, 3, 2, 3, 0};
@@ -980,6 +1007,10 @@ GPROJT_TEST(every_allocation_fails_once) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
     c.options.edge_length = 0.75; /* longer lists, which grow elsewhere */
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c.options.edge_length = 1.2; /* along a cut */
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c.options.edge_length = 1.5, c.options.variant = 1; /* a second pattern, when one is found already */
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
     c = gprojt_rose(4, 8, 0.1); /* a pattern with rows */
     c.edges[0] = 14, c.edges[1] = 3, c.edges[2] = 2, c.edges[3] = 3;
     c.given = true;
@@ -996,6 +1027,8 @@ GPROJT_TEST(every_allocation_fails_once) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
     c = gprojt_half_disc(); /* a strip over flat corners */
     c.edges[0] = c.edges[1] = 4, c.edges[2] = 5, c.edges[3] = 3;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
+    c.edges[0] = c.edges[2] = 3, c.edges[1] = 6, c.edges[3] = 8; /* with which the list of quads grows */
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_fill_with, &c) > 100);
     c = gprojt_rose(12, 2, 0); /* a circle whose corners are found */
     c.marked = false;
@@ -1014,6 +1047,7 @@ int main(void) {
     GPROJT_RUN(points_of_the_curve_are_kept);
     GPROJT_RUN(sides_are_divided_evenly);
     GPROJT_RUN(a_lens_has_four_edges);
+    GPROJT_RUN(a_triangle_has_four_edges);
     GPROJT_RUN(rings);
     GPROJT_RUN(single_quads);
     GPROJT_RUN(variants_differ);
@@ -1025,6 +1059,7 @@ int main(void) {
     GPROJT_RUN(the_best_change_is_named);
     GPROJT_RUN(anywhere_in_space);
     GPROJT_RUN(heights_are_harmonic);
+    GPROJT_RUN(a_single_height_is_harmonic);
     GPROJT_RUN(orientation_is_that_of_the_curve);
     GPROJT_RUN(angles_are_told);
     GPROJT_RUN(ovals_have_four_sides);
