@@ -984,6 +984,50 @@ GPROJT_TEST(any_side_may_be_first) {
     }
 }
 
+/* Seven corners where nothing can be cut, because the curve is so thin that cuts would run along it: the one that turns
+   least, 0 at first, becomes a place on a side, whichever is the first. */
+GPROJT_TEST(the_flattest_corner_is_none) {
+    int32_t shift, i, vertices = 0;
+    for (shift = 0; shift < 7; ++shift) {
+        gprojt_curve c = gprojt_rose(7, 1, 0);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        for (i = 0; i < 7; ++i) {
+            double angle = 6.283185307179586 * ((i + shift) % 7) / 7 + 1.7;
+            c.point[3 * i] = cos(angle), c.point[3 * i + 1] = 4e-4 * sin(angle), c.edges[i] = 2;
+        }
+        c.given = true;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 6) && info.patch_count == 1);
+        if (shift == 0) vertices = mesh->vertex_count;
+        GPROJT_CHECK(mesh->vertex_count == vertices);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* Arms of a star that meet in next to nothing, and four edges for all of it: each filling has quads turned over. */
+GPROJT_TEST(a_star_with_four_edges_is_none) {
+    gprojt_curve c;
+    gproj_fill_info info;
+    gproj_error error;
+    gproj_mesh *mesh;
+    int32_t i;
+    memset(&c, 0, sizeof c);
+    for (i = 0; i < 6; ++i) {
+        double angle = 6.283185307179586 * i / 6, r = i % 2 ? 5 : 0.2;
+        gprojt_add_point(&c, r * cos(angle), r * sin(angle), 0);
+    }
+    c.marked = true, c.corner_count = 2, c.corner[0] = 1, c.corner[1] = 3;
+    c.options.edge_length = 100;
+    mesh = gprojt_fill(&c, &info, &error);
+    GPROJT_CHECK(gprojt_mesh_was_refused(mesh, &error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "turned over"));
+    c.corner_count = 3, c.corner[2] = 5; /* with the third arm's end it can be filled */
+    mesh = gprojt_fill(&c, &info, &error);
+    GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 6));
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- memory -- */
 
 static bool gprojt_fill_with(const gproj_host *host, void *user) {
@@ -1066,6 +1110,8 @@ int main(void) {
     GPROJT_RUN(any_side_may_be_first);
     GPROJT_RUN(refusals_of_curves);
     GPROJT_RUN(refusals_of_options);
+    GPROJT_RUN(the_flattest_corner_is_none);
+    GPROJT_RUN(a_star_with_four_edges_is_none);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }
