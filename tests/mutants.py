@@ -629,12 +629,15 @@ def build(programs, sanitized, jobs):
 
 
 def read_equivalent():
-    """mutants.txt: function | old | new | reason; or function | (kind) | * | reason, for numbers that are tuned."""
+    """mutants.txt: function | old | new | reason; or function | (kind) | * | reason, for numbers that are tuned. With `old @ text`
+    only in lines with this text. Returns the texts (without spaces; "": any line) for each function, old and new."""
     path, answer = os.path.join(HERE, "mutants.txt"), {}
     if os.path.exists(path):
         for line in open(path):
             parts = [p.strip() for p in line.split(" | ")]
-            if len(parts) == 4 and not line.startswith("#"): answer[tuple(parts[:3])] = parts[3]
+            if len(parts) != 4 or line.startswith("#"): continue
+            old, _, text = parts[1].partition(" @ ")
+            answer.setdefault((parts[0], old, parts[2]), []).append("".join(text.split()))
     return answer
 
 
@@ -643,12 +646,14 @@ def one_line(m): return f"guidedproj.h:{m['line']}: {m['function']}: {m['kind']}
 
 def report(mutants, results):
     equivalent = read_equivalent()
+    with open(os.path.join(ROOT, "guidedproj.h")) as f: lines = ["".join(line.split()) for line in f]
     rows, order = {}, []
     for m, r in zip(mutants, results):
         if r is None: continue
         verdict = r["verdict"]
         if verdict != "killed":
-            if (m["function"], m["old"], m["new"] or "nothing") in equivalent: verdict = "equivalent"
+            texts = equivalent.get((m["function"], m["old"], m["new"] or "nothing"), [])
+            if any(text in lines[m["line"] - 1] for text in texts): verdict = "equivalent"
             elif (m["function"], f"({m['kind']})", "*") in equivalent: verdict = "tuned"
         if verdict in ("survived", "unreached"): print(f"{verdict}: {m['number']}: {one_line(m)}")
         if m["section"] not in rows:
