@@ -696,8 +696,8 @@ typedef struct gproj_solve_options {
     /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
        the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
        weights' ratios matter, and nothing is biased. If nothing is wished, gproj_solve adds closeness to the positions
-       that it begins with, and ends at the mesh nearest to these. Wants about 30 iterations. Converged means here that
-       the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
+       that it begins with, and ends at the mesh nearest to these. Wants about 30 iterations; allow 60 (see gproj_solve).
+       Converged means here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
     bool nearest;
 } gproj_solve_options;
 
@@ -1501,10 +1501,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
-   gproj_solve_options.nearest and allow 30 iterations. There the guard lasts almost to the end and asks for 0.1 of a
-   face's area, and a step that would take most of a face's area is shortened. Allow more than 50, and a mesh that is
-   spoiled at the minimum, or when half of them are over, gets the group "corners" for all its edges and corners; it is
-   led to a minimum with these, and lets them go only if the constraints do not hold at the end. */
+   gproj_solve_options.nearest and allow 60 iterations. There the guard lasts almost to the end and asks for 0.1 of a
+   face's area, and a step that would take most of a face's area is shortened. With a limit above 50 a mesh that is
+   spoiled at the minimum, or after half of them, gets the group "corners" for all its edges and corners: it is led to a
+   minimum with these, and lets them go only if the constraints do not hold at the end. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
 /* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as

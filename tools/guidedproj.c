@@ -1665,7 +1665,7 @@ static const tool_option options[] = {
      "steps as gproj_solve takes them without options: not smooth, wishes without N guide for half of the iterations, "
      "and --move pulls without a drag",
      set_flag, SETS(plain)},
-    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 30, with --plain 20)", set_iterations,
+    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 60, with --plain 20)", set_iterations,
      SETS(iterations)},
     {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
     {"epsilon", "E", "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", set_positive,
@@ -1971,7 +1971,7 @@ static bool check_written_problem(tool *t) {
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
     int i;
-    if (t->iterations == 0) t->iterations = t->nearest ? 30 : t->plain ? 20 : 200;
+    if (t->iterations == 0) t->iterations = t->nearest ? 60 : t->plain ? 20 : 200;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
     if (t->fill) t->input = t->fill;
