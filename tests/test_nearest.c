@@ -145,6 +145,31 @@ GPROJT_TEST(bounds_let_go) {
     gproj_system_destroy(s);
 }
 
+/* The point (0, 0) of the parabola y = x^2 / 2 is the nearest one to (0, c) up to c = 1; beyond, it is the farthest one around,
+   which no symmetric step leaves. The nearest ones have x^2 = 2 (c - 1). */
+GPROJT_TEST(farthest_points_are_left) {
+    static const double heights[] = {1.1, 1.5, 2, 10, 100};
+    int i;
+    for (i = 0; i < 5; ++i) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_term term[2];
+        gproj_result result;
+        int32_t wish, parabola;
+        gproj_system_add_variables(s, 2, 2, NULL);
+        wish = gprojt_add_group(s, "wish", GPROJ_WISH, 1);
+        gprojt_add_linear(s, wish, 0, 1, 0, 0);
+        gprojt_add_linear(s, wish, 1, 1, -heights[i], 0);
+        parabola = gprojt_add_group(s, "parabola", GPROJ_CONSTRAINT, 1);
+        term[0] = gprojt_term(1, -1, 1), term[1] = gprojt_term(0, 0, -0.5);
+        gproj_system_add_row(s, parabola, 2, term, 0, 0);
+        result = gprojt_solve_nearest(s, 60);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(fabs(gproj_system_values(s)[0]), sqrt(2 * (heights[i] - 1)), 1e-5);
+        if (i >= 3) GPROJT_CHECK(result.iterations <= 15); /* where steps with curvature fail at first */
+        gproj_system_destroy(s);
+    }
+}
+
 /* A row with a global group (low-rank update): the mean of many points is prescribed, closeness wished; they all move by
    the same. */
 GPROJT_TEST(global_rows) {
@@ -631,6 +656,7 @@ int main(void) {
     GPROJT_RUN(nearest_on_two_quadrics);
     GPROJT_RUN(nearest_in_a_ball);
     GPROJT_RUN(bounds_let_go);
+    GPROJT_RUN(farthest_points_are_left);
     GPROJT_RUN(global_rows);
     GPROJT_RUN(one_side_only);
     GPROJT_RUN(weights_are_ratios);
