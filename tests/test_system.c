@@ -1099,6 +1099,26 @@ GPROJT_TEST(memory_is_accounted_and_limited) {
     GPROJT_CHECK(failing.held == 0);
 }
 
+/* A row takes room for the variables that it names, each once: two numbers are 8 bytes, 1001 are 4 KB. */
+GPROJT_TEST(room_for_named_variables) {
+    enum {
+        TERMS = 1000
+    };
+    gproj_term terms[TERMS];
+    size_t used[2];
+    int32_t k, t;
+    for (k = 0; k < 2; ++k) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_system_add_variables(s, TERMS + 1, 1, NULL);
+        gprojt_add_group(s, "products", GPROJ_CONSTRAINT, 1);
+        for (t = 0; t < TERMS; ++t) terms[t] = gprojt_term(k * t, k * t + 1, 1);
+        GPROJT_CHECK(gproj_system_add_row(s, 0, TERMS, terms, 0, 0) == 0);
+        used[k] = gproj_system_memory(s).used;
+        gproj_system_destroy(s);
+    }
+    GPROJT_CHECK(used[0] + (TERMS - 10) * sizeof(int32_t) <= used[1]);
+}
+
 int main(void) {
     GPROJT_RUN(values_and_gradients_by_hand);
     GPROJT_RUN(values_of_large_terms_that_cancel);
@@ -1127,5 +1147,6 @@ int main(void) {
     GPROJT_RUN(placed_rows);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(memory_is_accounted_and_limited);
+    GPROJT_RUN(room_for_named_variables);
     return gprojt_report();
 }

@@ -32,6 +32,8 @@ GPROJT_TEST(obj_dialects) {
         "v 0 0 0\nv 1 0 \\\n0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\r\n  3 \\\r4",
         "f 1 2 3 4\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0", /* the face first */
         "v +0.0e0 0 -0\nv 10e-1 0 0\nv .1e1 1. 0\nv 0 1 0\nf 1 2 3 4\ncurv 1 2\np 1\nxyz ~ ? 4",
+        "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4", /* a byte order mark */
+        "\xef\xbb\xbfOFF\n4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
         "OFF\n4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n",
         "OFF 4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3 255 0 0",
         "# c\nCOFF\r\n4 1\r\n0 0 0 1 1 1 1\r\n1 0 0 1 1 1 1\r\n\r\n1 1 0 1 1 1 1 # c\r\n0 1 0 0 0 0 0\r\n4 0 1 2 3 0.5 "
