@@ -1040,7 +1040,7 @@ GPROJT_TEST(cholesky_memory_is_foretold) {
         gproj_cholesky *c = gproj_cholesky_create(NULL);
         gproj_cholesky_info info;
         matrix m;
-        size_t before, taken;
+        size_t before, taken, told;
         memset(&m, 0, sizeof m);
         m.n = 160;
         for (j = 0; j < m.n; ++j)
@@ -1051,7 +1051,8 @@ GPROJT_TEST(cholesky_memory_is_foretold) {
         before = gproj_cholesky_memory(c).used;
         GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_FACTORED);
         taken = gproj_cholesky_memory(c).used - before;
-        GPROJT_NEAR((double)taken, (double)(info.factor_bytes + info.work_bytes), 0.05 * (double)taken);
+        told = info.factor_bytes + info.work_bytes; /* arrays begin at cache lines, and are listed */
+        GPROJT_CHECK(told <= taken && taken <= told + 1000);
         gproj_cholesky_destroy(c);
         matrix_free(&m);
     }

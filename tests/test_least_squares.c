@@ -946,6 +946,20 @@ static bool solve_from_near(const gproj_host *host, void *user) {
     return code == GPROJ_OK;
 }
 
+/* All memory is the host's. */
+GPROJT_TEST(memory_of_the_host) {
+    uint64_t seed = 6;
+    squares s = random_squares(2000, 2, 1, &seed); /* whose factor is nothing beside the rows */
+    gproj_least_squares_result r;
+    gprojt_failing failing;
+    gproj_host host;
+    memset(&failing, 0, sizeof failing);
+    host = gprojt_failing_host(&failing);
+    GPROJT_CHECK(gproj_solve_least_squares(&s.p, &host, s.x, &r, NULL) == GPROJ_OK);
+    GPROJT_CHECK(r.memory.peak > 30000 && failing.peak >= r.memory.peak && failing.held == 0);
+    squares_free(&s);
+}
+
 GPROJT_TEST(failing_allocations) {
     squares s = roof(SADDLE, 6, true, 0.2, 17);
     int32_t i;
@@ -984,6 +998,7 @@ int main(void) {
     GPROJT_RUN(deterministic);
     GPROJT_RUN(bad_arguments);
     GPROJT_RUN(bad_bounds);
+    GPROJT_RUN(memory_of_the_host);
     GPROJT_RUN(failing_allocations);
     return gprojt_report();
 }
