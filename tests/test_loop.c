@@ -1174,6 +1174,7 @@ GPROJT_TEST(metric_comes_back) {
     gproj_term product = gprojt_term(0, 1, 1), linear[2];
     gproji_course course;
     gproji_loop loop;
+    uint64_t allocations;
     double value;
     int32_t i;
     gprojt_add_group(s, "product", GPROJ_CONSTRAINT, 1);
@@ -1193,8 +1194,9 @@ GPROJT_TEST(metric_comes_back) {
     GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
     for (i = 0; i < 2; ++i) s->group[1].local.gradient[i] = HUGE_VAL; /* whatever memory had */
     gproji_see_rows(&loop);
+    allocations = gproj_system_memory(s).allocations;
     gproji_stiffen(&loop, 0.5);
-    GPROJT_CHECK(s->group[1].weight == 0.05);
+    GPROJT_CHECK(s->group[1].weight == 0.05 && gproj_system_memory(s).allocations == allocations);
     GPROJT_CHECK(s->group[1].local.gradient[0] == 1 && s->group[1].local.gradient[1] == 1);
     GPROJT_CHECK(gproji_find_step(&loop, 1e-3) && gproji_take_step(s, 0) == 0);
     value = (3 + s->vector.step[0]) * (1 + s->vector.step[1]) - 2;
