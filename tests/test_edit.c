@@ -791,6 +791,20 @@ GPROJT_TEST(combs_spirals_darts) {
     free(xy);
 }
 
+/* A face of very many corners, each with its own triangle: work that grew with the square would take minutes. */
+GPROJT_TEST(a_face_of_very_many_corners) {
+    enum { MANY = 150000 };
+    double *xy = (double *)malloc(2 * MANY * sizeof(double));
+    gproj_edit *e;
+    int32_t i;
+    for (i = 0; i < MANY; ++i)
+        xy[2 * i] = cos(6.283185307179586 * i / MANY), xy[2 * i + 1] = sin(6.283185307179586 * i / MANY);
+    e = gprojt_polygon_edit(MANY, xy);
+    gprojt_check_triangles(e);
+    gproj_edit_destroy(e);
+    free(xy);
+}
+
 /* All triangulations of small convex polygons, by brute force: none is better. */
 static double gprojt_cost(const double *xy, int32_t a, int32_t b, int32_t c) {
     double ux = xy[2 * b] - xy[2 * a], uy = xy[2 * b + 1] - xy[2 * a + 1], vx = xy[2 * c] - xy[2 * b],
@@ -1310,6 +1324,7 @@ int main(void) {
     GPROJT_RUN(strips_are_cut_where_asked);
     GPROJT_RUN(polygons_that_are_not_convex);
     GPROJT_RUN(combs_spirals_darts);
+    GPROJT_RUN(a_face_of_very_many_corners);
     GPROJT_RUN(triangles_are_the_best);
     GPROJT_RUN(triangles_are_turned_least);
     GPROJT_RUN(diagonals_that_are_edges);
