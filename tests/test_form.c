@@ -464,6 +464,28 @@ GPROJT_TEST(gliding_on_a_curve) {
     }
 }
 
+/* A vertex that is where a curve begins is free to leave it: it is at x = 0.3 after the first step, as on a line. */
+GPROJT_TEST(gliding_from_the_start) {
+    static const double line[9] = {0, 0, 0, 0.5, 0, 0, 1, 0, 0};
+    static const int32_t first = 0;
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(3, 3));
+    gproj_curve *curve = gproj_curve_create(3, line, false, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_term x = {0, -1, 1};
+    int32_t group;
+    GPROJT_CHECK(gprojt_far(mesh->position, line) == 0);
+    gproj_add_gliding(form, curve, 1, &first, 1);
+    group = gproj_add_rows(form, "x is 0.3", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+    gproj_form_add_row(form, group, 1, &x, -0.3, 0);
+    gproj_solve(form, 1, NULL);
+    GPROJT_NEAR(mesh->position[0], 0.3, 1e-3);
+    GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_NEAR(mesh->position[0], 0.3, 1e-12);
+    gproj_form_destroy(form);
+    gproj_curve_destroy(curve);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The distance of p from a polyline, without the library. */
 static double gprojt_off_polyline(int32_t count, const double *points, bool closed, const double *p) {
     double off = HUGE_VAL;
@@ -2852,6 +2874,7 @@ int main(void) {
     GPROJT_RUN(fixed_vertices_stay);
     GPROJT_RUN(targets_are_followed);
     GPROJT_RUN(gliding_on_a_curve);
+    GPROJT_RUN(gliding_from_the_start);
     GPROJT_RUN(gliding_verdicts);
     GPROJT_RUN(a_gliding_boundary_goes_and_comes_back);
     GPROJT_RUN(a_boundary_loop_in_one_point);

@@ -335,6 +335,34 @@ GPROJT_TEST(cones_at_the_boundary) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Five planes around a vertex touch a cone, with equal angles or not: an odd number is no reason for doubt. */
+GPROJT_TEST(cones_of_five_faces) {
+    int odd;
+    for (odd = 0; odd < 2; ++odd) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        int32_t k;
+        memset(&soup, 0, sizeof soup);
+        gprojt_add_vertex(&soup, 0, 0, 1);
+        for (k = 0; k < 5; ++k) {
+            double u = 6.283185307179586 * (k + (odd ? 0.1 * sin(k) : 0)) / 5;
+            gprojt_add_vertex(&soup, cos(u), sin(u), 0);
+        }
+        for (k = 0; k < 5; ++k) gprojt_add_triangle(&soup, 0, 1 + k, 1 + (k + 1) % 5);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK(gproj_form_group_info(form, gproj_add_conicality(form, 1)).rows == 1 + 5);
+        result = gproj_solve(form, 40, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gproj_measure(mesh, NULL, NULL).conicality_max < 1e-9);
+        GPROJT_CHECK(!strstr(result.message, "do not add up"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- offsets -- */
 
 /* The largest sine of the angle between an edge and its offset, times the offset's length. */
@@ -827,6 +855,7 @@ int main(void) {
     GPROJT_RUN(conicality_refusals_and_weight_0);
     GPROJT_RUN(conicality_twice);
     GPROJT_RUN(cones_at_the_boundary);
+    GPROJT_RUN(cones_of_five_faces);
     GPROJT_RUN(face_offsets_of_conical_meshes);
     GPROJT_RUN(vertex_offsets_of_circular_meshes);
     GPROJT_RUN(vertex_offsets_of_inscribed_meshes);

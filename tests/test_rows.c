@@ -108,6 +108,27 @@ GPROJT_TEST(numbers_are_in_the_units_of_the_mesh) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A product of a coordinate far from the origin and an unknown that is no length. */
+GPROJT_TEST(products_of_units) {
+    static const double shift[3] = {100, 200, 4}, start = 3;
+    gproj_mesh *mesh = gprojt_cap(5, 3, shift);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group = gproj_add_rows(form, "product", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), u;
+    gproj_term product;
+    double factor;
+    u = gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, &start, NULL, NULL);
+    product = gprojt_term(0, u, 1);
+    gproj_form_add_row(form, group, 1, &product, -330, 0); /* x_0 u = 330 */
+    product = gprojt_term(u, 3, 1);
+    gproj_form_add_row(form, group, 1, &product, -333, 1); /* u x_1 = 333 */
+    GPROJT_CHECK(gproj_solve(form, 30, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_form_get_unknowns(form, u, 1, &factor, NULL) == GPROJ_OK);
+    GPROJT_NEAR(mesh->position[0] * factor, 330, 1e-9);
+    GPROJT_NEAR(mesh->position[3] * factor, 333, 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 typedef struct gprojt_starts {
     int32_t calls;
     bool bad;
@@ -565,6 +586,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(a_ball_in_any_units);
     GPROJT_RUN(numbers_are_in_the_units_of_the_mesh);
+    GPROJT_RUN(products_of_units);
     GPROJT_RUN(unknowns_start_anew);
     GPROJT_RUN(meddling_start_values);
     GPROJT_RUN(states_and_drags_know_unknowns);

@@ -55,6 +55,32 @@ GPROJT_TEST(circular_faces) {
     }
 }
 
+/* What a face lacks to be circular does not depend on where in the mesh it is: two of them, and one by itself. */
+GPROJT_TEST(circles_begin_at_their_faces) {
+    static const double quad[4][3] = {{0, 0, 0}, {1, 0, 0.3}, {1.2, 1, 0}, {0, 1, 0.2}};
+    double residual[2];
+    int32_t k, i, face[4];
+    for (k = 0; k < 2; ++k) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        memset(&soup, 0, sizeof soup);
+        for (i = 0; i < 4 * (k + 1); ++i) {
+            double away = i < 4 ? 0 : 20;
+            face[i % 4] = gprojt_add_vertex(&soup, quad[i % 4][0] + away, quad[i % 4][1], quad[i % 4][2] + away);
+            if (i % 4 == 3) gprojt_add_face(&soup, 4, face);
+        }
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_circularity(form, 1);
+        residual[k] = gproj_solve(form, 0, NULL).residual;
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(residual[0] > 0.01);
+    GPROJT_NEAR(residual[1], residual[0], 1e-12);
+}
+
 GPROJT_TEST(circular_real_meshes) {
     static const char *const names[] = {"eyeye_circular.obj", "formfinding-circular.obj"};
     int i;
@@ -291,6 +317,21 @@ GPROJT_TEST(equal_lengths) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Edges that are equal already are so in the rows, too. */
+GPROJT_TEST(equal_lengths_hold_on_a_grid) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+    gproj_form *form;
+    gproj_result result;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = 0;
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1);
+    result = gproj_solve(form, 0, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.residual < 1e-14);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(refusals_of_lengths) {
     static const int32_t far[] = {0, 1000000};
     static const double none[] = {0, 1};
@@ -314,6 +355,7 @@ GPROJT_TEST(refusals) {
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.1, 1);
     gproj_form *form = gproj_form_create(mesh, NULL);
     GPROJT_CHECK(gproj_add_volume(form, NAN, 1) == -1 && gproj_form_error(form)->code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(gproj_form_error(form)->place == GPROJ_PLACE_NONE && gproj_form_error(form)->index == -1);
     GPROJT_CHECK(gproj_add_circularity(form, 1) == -1 && gproj_add_parallelograms(form, 1) == -1);
     GPROJT_CHECK(gproj_add_equal_areas(form, 1) == -1 && gproj_add_volume(NULL, 1, 1) == -1);
     GPROJT_CHECK(gproj_add_circularity(NULL, 1) == -1 && gproj_add_equal_areas(NULL, 1) == -1);
@@ -392,6 +434,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(circularity_twice);
     GPROJT_RUN(circular_faces);
+    GPROJT_RUN(circles_begin_at_their_faces);
     GPROJT_RUN(circular_real_meshes);
     GPROJT_RUN(volumes);
     GPROJT_RUN(volume_is_reached);
@@ -401,6 +444,7 @@ int main(void) {
     GPROJT_RUN(area_rows_are_tangent);
     GPROJT_RUN(lengths);
     GPROJT_RUN(equal_lengths);
+    GPROJT_RUN(equal_lengths_hold_on_a_grid);
     GPROJT_RUN(refusals_of_lengths);
     GPROJT_RUN(refusals);
     GPROJT_RUN(spoiled_meshes_are_told);
