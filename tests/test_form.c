@@ -2400,6 +2400,23 @@ GPROJT_TEST(spheres_are_no_circles) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+    { /* by how much, in mean edges: whatever the unit of length */
+        char told[2][GPROJ_MESSAGE_SIZE];
+        for (i = 0; i < 2; ++i) {
+            gproj_mesh *mesh = gprojt_noisy(0, 5, 0.1, 6);
+            gproj_form *form;
+            gproj_result result;
+            int32_t k;
+            for (k = 0; k < 3 * mesh->vertex_count; ++k) mesh->position[k] *= i ? 1024 : 1;
+            form = gproj_form_create(mesh, NULL);
+            gproj_add_circularity(form, 1);
+            result = gproj_solve(form, 40, NULL);
+            memcpy(told[i], result.message, sizeof told[i]);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+        GPROJT_CHECK(strstr(told[0], "mean edge lengths)") && !strcmp(told[0], told[1]));
+    }
     { /* one face alone, and one without extent */
         static const double p[12] = {0, 0, 0, 1, 0, 0.3, 1, 1, 0, 0, 1, 0.3};
         static const int32_t degree = 4, corner[4] = {0, 1, 2, 3};

@@ -226,6 +226,7 @@ GPROJT_TEST(patches_stay_whole) {
             if (result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0 || planarity > 1e-12) continue;
             ++whole;
             helped += result.attempts > 1;
+            GPROJT_CHECK(!strstr(result.message, "attempts ended better"));
         }
     if (whole < 34 || helped < 3) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
     GPROJT_CHECK(whole >= 34 && helped >= 3);
@@ -312,6 +313,7 @@ GPROJT_TEST(attempts) {
                 if (info.kind != GPROJ_WISH && strcmp(info.name, "corners") != 0 && info.max > most) most = info.max;
             }
             GPROJT_NEAR(most, result.residual, 1e-9);
+            GPROJT_CHECK((strstr(result.message, "attempts ended better") != NULL) == (result.attempts > 1));
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }
