@@ -577,6 +577,48 @@ GPROJT_TEST(forged_states_do_no_harm) {
     gproj_mesh_destroy(mesh);
 }
 
+/* The byte before each group tells whose it is. One that is no group's of the library is refused, wherever it stands. */
+GPROJT_TEST(groups_of_nobody_are_refused) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    uint8_t *state, *forged;
+    size_t size, i;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    int32_t refused = 0;
+    forged = (uint8_t *)malloc(size);
+    if (!forged) abort();
+    for (i = 24; i + 8 < size; ++i) {
+        gproj_error error;
+        memcpy(forged, state, size);
+        forged[i] = 200;
+        gprojt_seal(forged, size);
+        if (gproj_state_restore(form, forged, size, &error) != GPROJ_OK)
+            refused += strstr(error.message, "a group is not one of the form") != NULL;
+        GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+    }
+    GPROJT_CHECK(refused >= gproj_system_group_count(gproj_form_system(form)));
+    free(state), free(forged);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A solve in frames ends when something is added, also if the form is saved before the next frame. */
+GPROJT_TEST(saving_hides_no_additions) {
+    gproj_mesh *mesh = gprojt_roof(2, 0.05);
+    uint8_t *state;
+    size_t size;
+    gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
+    gproj_result result;
+    free(state);
+    GPROJT_CHECK(gproj_solve_is_on(form) && gproj_add_lengths(form, 1, NULL, NULL, 1) >= 0);
+    state = gprojt_save(form, &size);
+    result = gproj_solve_advance(form, 0);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "were added since the solve began"));
+    GPROJT_CHECK(!gproj_solve_is_on(form));
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Takes a forged state: all that follows is finite. A refusal changes neither positions nor variables; it may leave
    groups of the library's own without a weight. False: numbers were so large that the form has an error. */
 static bool gprojt_try_forged(gproj_form *form, const uint8_t *forged, const uint8_t *state, size_t size,
@@ -1028,6 +1070,8 @@ int main(void) {
     GPROJT_RUN(states_cut_short);
     GPROJT_RUN(refused_states_leave_no_trace);
     GPROJT_RUN(forged_states_do_no_harm);
+    GPROJT_RUN(groups_of_nobody_are_refused);
+    GPROJT_RUN(saving_hides_no_additions);
     GPROJT_RUN(each_byte_forged);
     GPROJT_RUN(numbers_out_of_range);
     GPROJT_RUN(eighths_out_of_range);
