@@ -7592,6 +7592,7 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
 
 enum {
     GPROJI_BLOCK_MAX = 8,        /* variables in a block */
+    GPROJI_SCHUR_LOCALS = 3,     /* local unknowns in an element that has some: a face's normal */
     GPROJI_WIDE_ROW = 512,       /* rows with more variables are dense: not in the sparse matrix */
     GPROJI_ROWS_PER_TASK = 2048, /* in the evaluation */
     GPROJI_ROWS_AHEAD = 16,      /* see gproji_expect_rows */
@@ -8028,9 +8029,9 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     return first;
 }
 
-/* Declares variables as local unknowns: eliminated within their element, and not regularised. */
-GPROJI_INTERNAL void gproji_set_auxiliary(gproj_system *s, int32_t first, int32_t count) {
-    memset(s->blocks.auxiliary + first, 1, (size_t)count);
+/* Declares a block of three variables as local unknowns: eliminated within their element, and not regularised. */
+GPROJI_INTERNAL void gproji_set_auxiliary(gproj_system *s, int32_t first) {
+    memset(s->blocks.auxiliary + first, 1, GPROJI_SCHUR_LOCALS);
 }
 
 GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s ? s->variable_count : 0; }
@@ -9319,8 +9320,7 @@ GPROJI_INTERNAL bool gproji_schur_is_outnumbered(const gproj_system *s, double l
 
 /* Counts the columns that an element's rows are projected off: N, and one more for a zero sum. */
 GPROJI_INLINE int32_t gproji_schur_columns(const gproj_system *s, int32_t element) {
-    int32_t node = s->schur.auxiliary[element];
-    return s->schur.zero_sum[element] + (node < 0 ? 0 : s->nodes.first[node + 1] - s->nodes.first[node]);
+    return s->schur.zero_sum[element] + (s->schur.auxiliary[element] < 0 ? 0 : GPROJI_SCHUR_LOCALS);
 }
 
 /* Numbers the multipliers: an element has as many as its rows leave. False: one has none, or there are too many for
@@ -9486,7 +9486,7 @@ typedef struct gproji_alike {
     double *column;   /* m x count: the columns that multipliers are orthogonal to; then reflections */
     double *scale;    /* count */
     double *diagonal; /* count */
-    double *triangle; /* (count - zero_sum)^2 */
+    double *triangle; /* GPROJI_SCHUR_LOCALS^2 */
     double *q;        /* m x GPROJI_SCHUR_TOGETHER */
     double *c;        /* one element's: GPROJI_BLOCK_MAX a node */
     double heaviest[GPROJI_LANES];
@@ -9508,15 +9508,14 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
         int64_t columns = gproji_schur_columns(s, e), joined = d->link_start[e + 1] - d->link_start[e];
         int64_t lanes = m * (columns + GPROJI_SCHUR_TOGETHER) + 2 * columns + columns * columns;
         int64_t most = lanes * GPROJI_LANES + GPROJI_BLOCK_MAX * joined * GPROJI_SCHUR_TOGETHER;
-        int32_t size = (int32_t)columns - d->zero_sum[e];
         d->most = d->most > most ? d->most : most;
-        d->triangle_size = gproji_max(d->triangle_size, size * size);
+        if (d->auxiliary[e] >= 0) d->triangle_size = GPROJI_SCHUR_LOCALS * GPROJI_SCHUR_LOCALS;
         entries += left * joined;
         for (l = d->link_start[e]; l < d->link_start[e + 1]; ++l)
             values += left * (s->nodes.first[d->link_node[l] + 1] - s->nodes.first[d->link_node[l]]);
     }
     /* 2. Local unknowns at the end are not in dense columns; rounded up so that gproji_dot sums alike with them. */
-    for (s->wide.kept = s->variable_count; s->wide.kept > 0 && s->blocks.auxiliary[s->wide.kept - 1];) s->wide.kept--;
+    for (s->wide.kept = s->variable_count; s->blocks.auxiliary[s->wide.kept - 1];) s->wide.kept--;
     s->wide.kept = gproji_min(gproji_round_up(s->wide.kept, 4), s->variable_count);
     d->chunks = gproji_max(1, gproji_min(GPROJI_SCHUR_CHUNKS, d->elements / GPROJI_ELEMENTS_PER_TASK));
     d->root_start = (int64_t *)gproji_pool_take(pool, nodes, sizeof(int64_t));
@@ -9901,7 +9900,7 @@ typedef struct gproji_assembly {
 /* Computes C, r and R for a batch, and additions to E at the nodes. */
 GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
     const gproji_schur *d = &s->schur;
-    const int32_t size = a->count - a->zero_sum;
+    const int32_t size = GPROJI_SCHUR_LOCALS;
     int32_t j, k, lane, together;
     /* 1. Reflections, compiled for a quad, alone or with another row: nearly all elements have these sizes. */
     memset(a->column, 0, (size_t)(a->m * a->count * GPROJI_LANES) * sizeof *a->column);
@@ -9913,10 +9912,7 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
     else
         gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
     /* 2. R, and the share in E that keeps normals from turning too fast. */
-    if (size == 3)
-        gproji_take_triangle(a, a->m, a->zero_sum, 3);
-    else
-        gproji_take_triangle(a, a->m, a->zero_sum, size);
+    gproji_take_triangle(a, a->m, a->zero_sum, size);
     for (lane = 0; lane < a->lanes; ++lane) {
         double *triangle = d->triangle + (int64_t)(a->first + lane) * d->triangle_size, heaviest = a->heaviest[lane];
         double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / epsilon2) : 0;
@@ -9990,7 +9986,7 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
         a.m = (int32_t)(d->row_start[e + 1] - d->row_start[e]);
         a.count = gproji_schur_columns(s, e), a.zero_sum = d->zero_sum[e], a.left = d->first[e + 1] - d->first[e];
         for (++e; e < end && a.lanes < GPROJI_LANES && d->row_start[e + 1] - d->row_start[e] == a.m &&
-                  gproji_schur_columns(s, e) == a.count && d->zero_sum[e] == a.zero_sum;
+                  gproji_schur_columns(s, e) == a.count;
              ++e)
             a.lanes++;
         a.column = d->work + chunk * d->most;
@@ -10245,15 +10241,14 @@ GPROJI_INTERNAL void gproji_schur_move(void *data, int32_t chunk) {
 GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
     gproj_system *s = (gproj_system *)data;
     const gproji_schur *d = &s->schur;
+    const int32_t size = GPROJI_SCHUR_LOCALS, end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
-    int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
     for (; e < end; ++e) {
         const double *triangle = d->triangle + (int64_t)e * d->triangle_size;
-        int32_t node = d->auxiliary[e], size, i, j;
+        int32_t node = d->auxiliary[e], i, j;
         double x[GPROJI_BLOCK_MAX];
         int64_t k, l;
         if (node < 0) continue;
-        size = s->nodes.first[node + 1] - s->nodes.first[node];
         /* 1. x = N'w^2 (phi + G dv). */
         memset(x, 0, sizeof x);
         for (k = d->row_start[e]; k < d->row_start[e + 1]; ++k) {
@@ -19291,7 +19286,7 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     gproji_face_normal(form, face, normal);
     n = gproj_system_add_variables(s, 3, 3, normal);
     if (n < 0) return;
-    gproji_set_auxiliary(s, n, 3);
+    gproji_set_auxiliary(s, n);
     form->normal[face] = n;
     part->element[part->count++] = face;
     gproji_join_block(s, n);

@@ -323,7 +323,7 @@ static int32_t gprojt_add_sum(gproj_system *s, int32_t group, int32_t first, int
     gproj_term term[200];
     int32_t t;
     for (t = 0; t < count * times; ++t) term[t] = gprojt_term(first + t % count, -1, 1.0 / times);
-    return gproj_system_add_row(s, group, count * times, term, -1, t);
+    return gproj_system_add_row(s, group, count * times, term, -1, first); /* each an element of its own */
 }
 
 GPROJT_TEST(rows_and_terms) {

@@ -377,6 +377,143 @@ GPROJT_TEST(steps_of_many_elements) {
     }
 }
 
+/* -- elements that no form has -- */
+
+/* Adds blocks of 1 to 4 variables near 0, `nodes` of them; first[k]: the first one in block k. */
+static void gprojt_add_nodes(gproj_system *s, int32_t nodes, int32_t *first, uint64_t *seed) {
+    double x[4];
+    int32_t k, i;
+    for (k = 0; k < nodes; ++k) {
+        int32_t size = 1 + gprojt_below(seed, 4);
+        for (i = 0; i < size; ++i) x[i] = gprojt_uniform(seed) - 0.5;
+        first[k] = gproj_system_add_variables(s, size, size, x);
+    }
+    first[nodes] = gproj_system_variable_count(s);
+}
+
+/* Adds a row with all variables of two of the blocks and, if `local` >= 0, with products by the three local unknowns. */
+static void gprojt_add_joining(gproj_system *s, int32_t group, const int32_t *first, int32_t nodes, int32_t local,
+                               int32_t element, uint64_t *seed) {
+    gproj_term term[16];
+    int32_t count = 0, a = gprojt_below(seed, nodes), b = (a + 1 + gprojt_below(seed, nodes - 1)) % nodes, i, k;
+    for (i = first[a]; i < first[a + 1]; ++i) term[count++] = gprojt_term(i, -1, gprojt_uniform(seed) - 0.5);
+    for (i = first[b]; i < first[b + 1]; ++i) term[count++] = gprojt_term(i, -1, gprojt_uniform(seed) - 0.5);
+    for (k = 0; k < 3 && local >= 0; ++k) {
+        term[count++] = gprojt_term(local + k, -1, gprojt_uniform(seed) - 0.5);
+        term[count++] = gprojt_term(local + k, first[a], gprojt_uniform(seed) - 0.5);
+    }
+    gproj_system_add_row(s, group, count, term, gprojt_uniform(seed) - 0.5, element);
+}
+
+/* Adds three local unknowns, and rows with them. */
+static void gprojt_add_local(gproj_system *s, int32_t group, const int32_t *first, int32_t nodes, int32_t rows,
+                             uint64_t *seed) {
+    double x[3];
+    int32_t k, local;
+    for (k = 0; k < 3; ++k) x[k] = gprojt_uniform(seed) - 0.5;
+    local = gproj_system_add_variables(s, 3, 3, x);
+    gproji_set_auxiliary(s, local);
+    for (k = 0; k < rows; ++k) gprojt_add_joining(s, group, first, nodes, local, -1, seed);
+}
+
+/* One step of the system, of constraints with weight 1, against the dense one with the factors of eps^2 that the step had;
+   returns the largest difference. */
+static double gprojt_plain_step_error(gproj_system *s, double epsilon) {
+    int32_t n = s->variable_count, v, i, r;
+    double *before = (double *)malloc((size_t)n * sizeof *before), *after = (double *)malloc((size_t)n * sizeof *after);
+    double *gradient = (double *)malloc((size_t)n * sizeof *gradient), worst = 0;
+    gproj_solve_options options;
+    gprojt_dense d;
+    d.n = n;
+    d.a = (long double *)calloc((size_t)n * (size_t)n, sizeof *d.a);
+    d.b = (long double *)calloc((size_t)n, sizeof *d.b);
+    if (!before || !after || !gradient || !d.a || !d.b) abort();
+    memset(&options, 0, sizeof options);
+    options.epsilon = epsilon, options.skip_damping = true, options.tolerance = 1e-300;
+    memcpy(before, s->x, (size_t)n * sizeof *before);
+    GPROJT_CHECK(gproj_system_solve(s, 1, &options).iterations == 1);
+    memcpy(after, s->x, (size_t)n * sizeof *after);
+    memcpy(s->x, before, (size_t)n * sizeof *before);
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; r < s->group[i].row_count; ++r) {
+            double phi = gproj_system_row_value(s, i, r, gradient);
+            gprojt_dense_add(&d, gradient, 1, phi);
+        }
+    for (v = 0; v < n; ++v)
+        if (!s->blocks.auxiliary[v])
+            d.a[(size_t)v * (size_t)n + (size_t)v] +=
+                epsilon * epsilon * (s->schur.on ? s->schur.metric[s->nodes.of[v]] : 1);
+    gprojt_dense_solve(&d);
+    for (v = 0; v < n; ++v) worst = fmax(worst, fabs(after[v] - before[v] - (double)d.b[v]));
+    free(before), free(after), free(gradient), free(d.a), free(d.b);
+    return worst;
+}
+
+/* Local unknowns between nodes of all sizes, rows without any that belong to one face, and rows at one node. */
+GPROJT_TEST(elements_of_all_kinds) {
+    uint64_t seed = 71;
+    int32_t round, k, j, first[25];
+    for (round = 0; round < 30; ++round) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_group group;
+        memset(&group, 0, sizeof group);
+        group.name = "on faces", group.place = GPROJ_PLACE_FACE, group.schedule = gproj_keep(1);
+        gprojt_add_nodes(s, 24, first, &seed);
+        gprojt_add_group(s, "local", GPROJ_CONSTRAINT, 1);
+        gproj_system_add_group(s, &group);
+        gprojt_add_group(s, "own", GPROJ_CONSTRAINT, 1);
+        for (k = 0; k < 10; ++k) gprojt_add_local(s, 0, first, 24, k == 9 ? 4 : 4 + gprojt_below(&seed, 3), &seed);
+        for (k = 0; k < 4; ++k)
+            for (j = 0; j < (k < 2 ? 4 : 2); ++j) gprojt_add_joining(s, 1, first, 24, -1, k, &seed);
+        for (k = 0; round % 2 && k < 24; k += 2) gprojt_add_linear(s, 2, first[k], 1, -0.1, k);
+        GPROJT_CHECK(gprojt_plain_step_error(s, 0.01) < 1e-9);
+        GPROJT_CHECK(s->schur.on && s->schur.elements == 14);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Where an element has no more rows than local unknowns, or rows of faces are many after all, the matrix is the one for all
+   variables. */
+GPROJT_TEST(not_taken_where_they_do_not_pay) {
+    uint64_t seed = 72;
+    int32_t few, k, first[25];
+    for (few = 0; few < 2; ++few) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_group group;
+        memset(&group, 0, sizeof group);
+        group.name = "on faces", group.place = GPROJ_PLACE_FACE, group.schedule = gproj_keep(1);
+        gprojt_add_nodes(s, 24, first, &seed);
+        gprojt_add_group(s, "local", GPROJ_CONSTRAINT, 1);
+        gproj_system_add_group(s, &group);
+        for (k = 0; k < 8; ++k) gprojt_add_local(s, 0, first, 24, few && k == 5 ? 3 : 4, &seed);
+        for (k = 0; !few && k < 100; ++k) gprojt_add_joining(s, 1, first, 24, -1, k, &seed);
+        GPROJT_CHECK(gproj_system_solve(s, 40, NULL).outcome == (few ? GPROJ_CONVERGED : GPROJ_STALLED));
+        GPROJT_CHECK(!s->schur.on);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Rows that join blocks of 8 at random: the last fronts have hundreds of rows. */
+GPROJT_TEST(large_fronts) {
+    uint64_t seed = 73;
+    gproj_system *s = gproj_system_create(NULL);
+    int32_t k, j, f, most = 0;
+    gproj_system_add_variables(s, 800, 8, NULL);
+    gprojt_add_group(s, "joining", GPROJ_CONSTRAINT, 1);
+    for (k = 0; k < 640; ++k) {
+        gproj_term term[6];
+        int32_t a = gprojt_below(&seed, 100), b = (a + 1 + gprojt_below(&seed, 99)) % 100;
+        for (j = 0; j < 6; ++j)
+            term[j] = gprojt_term(8 * (j % 2 ? a : b) + gprojt_below(&seed, 8), -1, gprojt_uniform(&seed) - 0.5);
+        gproj_system_add_row(s, 0, 6, term, gprojt_uniform(&seed) - 0.5, k);
+    }
+    GPROJT_CHECK(gprojt_plain_step_error(s, 0.1) < 1e-9);
+    GPROJT_CHECK(s->schur.on);
+    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) most = gproji_max(most, s->cholesky->symbolic.front[f].width + s->cholesky->symbolic.front[f].below);
+    GPROJT_CHECK(most > 256);
+    gproj_system_destroy(s);
+}
+
 /* -- when they are taken -- */
 
 static bool gprojt_is_on(const gproj_form *form) { return form->system->compiled && form->system->schur.on; }
@@ -969,6 +1106,9 @@ GPROJT_TEST(faces_on_fixed_lines) {
 int main(void) {
     GPROJT_RUN(steps_are_those_of_the_dense_matrix);
     GPROJT_RUN(steps_of_many_elements);
+    GPROJT_RUN(elements_of_all_kinds);
+    GPROJT_RUN(not_taken_where_they_do_not_pay);
+    GPROJT_RUN(large_fronts);
     GPROJT_RUN(taken_where_only_constraints_act);
     GPROJT_RUN(nearest_solves_and_drags_do_without);
     GPROJT_RUN(idle_groups_change_nothing);
