@@ -11286,7 +11286,7 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
         const gproji_group *g = &s->group[i];
         int32_t last = gproji_last_iteration(loop, g);
         if (!(g->weight > 0) || g->role >= GPROJI_METRIC || g->row_count == 0) continue;
-        if (g->kind == GPROJ_WISH && g->schedule.decay > 0 && g->schedule.decay < 1)
+        if (g->kind == GPROJ_WISH && g->schedule.decay < 1)
             end = n;
         else if (last > 0)
             end = gproji_min(end, last);
@@ -11357,7 +11357,6 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled);
         s->progress.settling = n <= half && guided ? 0 : s->progress.settling + 1;
         loop->standing = gproji_take_standing(s);
-        if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         /* 2. The step, unless all is done. */
         if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
                                    (loop->result.iterations > 0 && loop->result.step <= loop->tolerance)))
@@ -11420,8 +11419,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *other = &s->group[i];
-        bool decays = other->schedule.decay > 0 && other->schedule.decay < 1;
-        bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !decays;
+        bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !(other->schedule.decay < 1);
         double max = gproj_system_group_info(s, i).max, energy = 0;
         /* 1. The wish with the most energy among those that act to the end and do not fade by themselves. */
         for (k = 0; lasts && k < gproji_group_tasks(other); ++k) energy += other->tally.part[k].sum;

@@ -250,11 +250,101 @@ GPROJT_TEST(failed_by_an_error_on_the_way) {
     GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "no row 99"));
     GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_INDEX && gproj_system_error(s)->index == 99);
     gproj_system_destroy(s);
+    s = gprojt_system(NULL, 1, 1, x); /* in the first call, which finds that the constraint holds */
+    calls = 1;
+    gproj_system_add_group(s, &group);
+    gprojt_add_linear(s, 0, 0, 1, -5, 0);
+    result = gproj_system_solve(s, 9, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "no row 99"));
+    gproj_system_destroy(s);
     s = gprojt_system(NULL, 1, 1, x);
     calls = 1;
     gproj_system_add_group(s, &group);
     GPROJT_CHECK(gproj_system_check_gradients(s) == HUGE_VAL);
     gproj_system_destroy(s);
+}
+
+static bool gprojt_do_wrong_in(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    if (iteration->number == *(const int32_t *)user) gproj_system_set_row(s, 0, 99, NULL, 0);
+    return true;
+}
+
+/* Errors made by a callback end the solve, and not less so after the last iteration. */
+GPROJT_TEST(failed_by_an_error_of_a_callback) {
+    int32_t nearest, at;
+    for (nearest = 0; nearest < 2; ++nearest)
+        for (at = 1; at <= 4; ++at) {
+            static const double x[2] = {5, 3};
+            gproj_system *s = gprojt_system(NULL, 2, 1, x);
+            gproj_term square = gprojt_term(0, 0, 1);
+            gproj_solve_options options;
+            gproj_result result;
+            memset(&options, 0, sizeof options);
+            options.on_iteration = gprojt_do_wrong_in, options.user = &at, options.nearest = nearest == 1;
+            gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1);
+            gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
+            gproj_system_add_row(s, 0, 1, &square, 0, 0); /* a double root: slow */
+            gprojt_add_linear(s, 1, 1, 1, 0, 0);
+            result = gproj_system_solve(s, 4, &options);
+            GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "no row 99"));
+            GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_INDEX);
+            GPROJT_CHECK(gproj_system_values(s)[0] > 0 && gproj_system_values(s)[0] < 5);
+            gproj_system_destroy(s);
+        }
+}
+
+/* Refuses a number of steps, from the first one on that begins near the minimum. */
+typedef struct gprojt_refusing {
+    int32_t steps;
+    bool near;
+} gprojt_refusing;
+
+static bool gprojt_see_optimality(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    (void)s;
+    ((gprojt_refusing *)user)->near |= iteration->optimality < 1e-2;
+    return true;
+}
+
+static bool gprojt_refuse_some(void *user, const double *before, const double *after) {
+    gprojt_refusing *r = (gprojt_refusing *)user;
+    (void)before, (void)after;
+    return r->near && r->steps-- > 0;
+}
+
+/* x^2 + y^2 = 1 nearest to (3, 4), but steps are refused for a while: first all those with curvature, which are tried first, then
+   some without. If no step is left the verdict says so. */
+GPROJT_TEST(refused_slides) {
+    static const double x[2] = {0, 1};
+    static const int32_t refused[] = {0, 1, 17, 18, 19, 30, 1000};
+    int32_t k;
+    for (k = 0; k < 7; ++k) {
+        gproj_system *s = gprojt_system(NULL, 2, 2, x);
+        gproj_term square[2] = {{0, 0, 1}, {1, 1, 1}};
+        gproj_solve_options options;
+        gproji_loop loop;
+        gprojt_refusing refusing;
+        refusing.steps = refused[k], refusing.near = false;
+        memset(&options, 0, sizeof options);
+        options.nearest = true, options.on_iteration = gprojt_see_optimality, options.user = &refusing;
+        gprojt_add_group(s, "circle", GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "wish", GPROJ_WISH, 1);
+        gproj_system_add_row(s, 0, 2, square, -1, 0);
+        gprojt_add_linear(s, 1, 0, 1, -3, 0);
+        gprojt_add_linear(s, 1, 1, 1, -4, 0);
+        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 60, &options));
+        loop.hooks.refuse = gprojt_refuse_some, loop.hooks.user = &refusing;
+        GPROJT_CHECK(gproji_run(&loop, -1) && refusing.near);
+        GPROJT_CHECK(loop.result.residual <= loop.result.tolerance);
+        if (refused[k] < 1000) {
+            GPROJT_CHECK(loop.result.outcome == GPROJ_CONVERGED && refusing.steps < 0);
+            GPROJT_NEAR(gproj_system_values(s)[0], 0.6, 1e-6);
+            GPROJT_NEAR(gproj_system_values(s)[1], 0.8, 1e-6);
+        } else {
+            GPROJT_CHECK(loop.result.outcome == GPROJ_STALLED);
+            GPROJT_CHECK(strstr(loop.result.message, "all constraints hold to the tolerance, and no step serves the wishes"));
+        }
+        gproj_system_destroy(s);
+    }
 }
 
 /* What a callback may not do: it would pull the arrays from under the solve. */
@@ -363,24 +453,83 @@ GPROJT_TEST(steps_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* Undamped steps, too, end where numbers do: x^2 + x + 1e153 = 0 is 0 far beyond them. */
+GPROJT_TEST(undamped_steps_that_overflow) {
+    static const gproj_term term[2] = {{0, 0, 1}, {0, -1, 1}};
+    gproj_system *s = gprojt_system(NULL, 1, 1, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.skip_damping = true;
+    gprojt_add_group(s, "far", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_row(s, 0, 2, term, 1e153, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0);
+    GPROJT_CHECK(gproj_system_values(s)[0] == 0 && result.residual == 1e153);
+    gproj_system_destroy(s);
+}
+
+/* An undamped solve whose residual falls slowly, by 2 % a step, loses patience; but not where the last of these steps is the one
+   that reaches the tolerance. */
+GPROJT_TEST(patience_ends_where_constraints_hold) {
+    static const double x[1] = {1};
+    int32_t reached;
+    for (reached = 0; reached < 2; ++reached) {
+        gproj_system *s = gprojt_system(NULL, 1, 1, x);
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&options, 0, sizeof options);
+        options.skip_damping = true, options.epsilon = 7; /* eps^2 / (1 + eps^2) = 0.98 */
+        options.tolerance = pow(0.98, reached ? 5.5 : 6.5);
+        gprojt_add_group(s, "slow", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 0, 0, 1, 0, 0);
+        result = gproj_system_solve(s, 50, &options);
+        GPROJT_CHECK(result.iterations == 6 && result.outcome == (reached ? GPROJ_CONVERGED : GPROJ_STALLED));
+        GPROJT_NEAR(result.residual, pow(0.98, 6), 1e-12);
+        gproj_system_destroy(s);
+    }
+}
+
 /* As long as there is a group that no step can serve there is no step. That it will go is known from its schedule: the
    solve waits for that, in no time, and then does what can be done. */
 static void gprojt_check_wait(gproj_kind kind, gproj_schedule schedule, int32_t iterations, gproj_outcome outcome,
                               int32_t last) {
     static const double x[2] = {1, 5};
+    int32_t faint; /* in either order */
+    for (faint = 0; faint < 2; ++faint) {
+        gproj_system *s = gprojt_system(NULL, 2, 1, x);
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&options, 0, sizeof options);
+        options.epsilon = 1e-150;
+        gprojt_add_group(s, "first", faint == 0 ? kind : GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "second", faint == 1 ? kind : GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 1 - faint, 1, 1, -2, 0);
+        gprojt_add_linear(s, faint, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
+        gproj_system_set_schedule(s, faint, schedule);
+        result = gproj_system_solve(s, iterations, &options);
+        GPROJT_CHECK(result.outcome == outcome && result.iterations == last);
+        GPROJT_CHECK(gproj_system_values(s)[0] == 1);
+        GPROJT_CHECK(gproj_system_values(s)[1] == (outcome == GPROJ_CONVERGED ? 2 : 5));
+        gproj_system_destroy(s);
+    }
+}
+
+/* If the constraints hold already, and no step serves the wishes, there is nothing to be done. */
+GPROJT_TEST(wishes_that_no_step_serves) {
+    static const double x[2] = {1, 2};
     gproj_system *s = gprojt_system(NULL, 2, 1, x);
     gproj_solve_options options;
     gproj_result result;
     memset(&options, 0, sizeof options);
     options.epsilon = 1e-150;
-    gprojt_add_group(s, "other", GPROJ_CONSTRAINT, 1);
-    gprojt_add_group(s, "faint", kind, 1);
+    gprojt_add_group(s, "held", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "faint", GPROJ_WISH, 1);
     gprojt_add_linear(s, 0, 1, 1, -2, 0);
-    gprojt_add_linear(s, 1, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
-    gproj_system_set_schedule(s, 1, schedule);
-    result = gproj_system_solve(s, iterations, &options);
-    GPROJT_CHECK(result.outcome == outcome && result.iterations == last);
-    GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == (outcome == GPROJ_CONVERGED ? 2 : 5));
+    gprojt_add_linear(s, 1, 0, 1e-160, 1e300, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations == 0 && result.residual == 0);
+    GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == 2);
     gproj_system_destroy(s);
 }
 
@@ -836,6 +985,31 @@ GPROJT_TEST(tolerance_knows_large_terms) {
     }
 }
 
+/* A global row has one residual for many terms: the roundings of its linear terms count; products of variables, which count in
+   no other row either, do not. */
+GPROJT_TEST(tolerance_of_global_rows) {
+    int32_t k, large;
+    for (large = 0; large < 2; ++large) {
+        double x[20];
+        gproj_system *s;
+        gproj_group group;
+        gproj_term term[21];
+        gproj_result result;
+        memset(&group, 0, sizeof group);
+        group.name = "global", group.global = true, group.schedule = gproj_keep(1);
+        for (k = 0; k < 20; ++k) x[k] = 0.1 * k - 1, term[k] = gprojt_term(k, (k + large) % 20, 1);
+        term[20] = gprojt_term(3, -1, large ? 1e3 : 1);
+        s = gprojt_system(NULL, 20, 1, x);
+        gproj_system_add_group(s, &group);
+        gproj_system_add_row(s, 0, 21, term, -1, 0);
+        result = gproj_system_solve(s, 30, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(result.tolerance, large ? 16e3 * DBL_EPSILON * fabs(gproj_system_values(s)[3]) : 1e-13, 1e-13);
+        GPROJT_NEAR(gproj_system_row_value(s, 0, 0, NULL), 0, result.tolerance);
+        gproj_system_destroy(s);
+    }
+}
+
 GPROJT_TEST(wishes_alone) {
     static const double x[2] = {5, -5};
     gproj_system *s = gprojt_system(NULL, 2, 1, x);
@@ -976,6 +1150,172 @@ GPROJT_TEST(weights_below_epsilon) {
         GPROJT_CHECK(strstr(result.message, " of 'weak' is too small beside the regularisation ") != NULL);
         gproj_system_destroy(s);
     }
+}
+
+/* -- groups with a role in steps -- */
+
+/* A group of a role that forms give to theirs. */
+static int32_t gprojt_add_role(gproj_system *s, const char *name, gproj_kind kind, gproji_role role) {
+    int32_t group = gprojt_add_group(s, name, kind, 1);
+    gproji_declare_role(s, group, role);
+    return group;
+}
+
+/* After a good step: the stiffness before, how the step went, and the stiffness then. */
+typedef struct gprojt_stiffness {
+    double before, agreement, length;
+    int32_t wary;
+    bool failed, restless;
+    double left, merit, residual, after;
+} gprojt_stiffness;
+
+GPROJT_TEST(stiffness_of_the_next_step) {
+    static const gprojt_stiffness cases[] = {
+        /* the better the linearised rows were, the less of it; more after a short step; a metric that comes back is not weak */
+        {1, 0.95, 1, 0, false, false, 0, 1, 1, 0.1},
+        {1, 0.7, 1, 0, false, false, 0, 1, 1, 0.3},
+        {1, 0.3, 1, 0, false, false, 0, 1, 1, 0.7},
+        {1, 0.2, 1, 0, false, false, 0, 1, 1, 2},
+        {1, 0.95, 0.5, 0, false, false, 0, 1, 1, 2},
+        {20, 0.95, 0.5, 0, false, false, 0, 1, 1, 30},
+        {1, 0.95, 1, 2, false, false, 0, 1, 1, 0.5},
+        {1, 0.95, 1, 0, true, false, 0, 1, 1, 1},
+        {0, 0.95, 0.5, 0, false, false, 0, 1e-6, 1e-3, 0.01},
+        /* it rests when the merit is small; not where that is large */
+        {0.05, 0.95, 1, 0, false, false, 0, 1e-6, 1e-3, 0},
+        {0.05, 0.95, 1, 0, false, false, 0, 1, 1, 0.01},
+        {0, 0.95, 1, 0, false, false, 0, 1e-6, 1e-3, 0},
+        /* a short step at the end does not call it back */
+        {0, 0.95, 0.5, 0, false, false, 0, 1e-20, 1e-10, 0},
+        {0.004, 0.95, 0.5, 0, false, false, 0, 1e-20, 1e-10, 0},
+        /* once it has rested in vain it fades slowly, while steps leave much of the merit, and rests in the end */
+        {0.05, 0.95, 1, 0, false, true, 0.5, 1e-6, 1e-3, 0.005},
+        {0.05, 0.95, 1, 0, false, true, 0.05, 1e-6, 1e-3, 0},
+        {5e-6, 0.95, 1, 0, false, true, 0.5, 1e-6, 1e-3, 0},
+    };
+    size_t k;
+    for (k = 0; k < sizeof cases / sizeof cases[0]; ++k) {
+        const gprojt_stiffness *c = &cases[k];
+        gproj_system *s = gprojt_system(NULL, 2, 1, NULL);
+        gproji_loop loop;
+        gprojt_add_group(s, "row", GPROJ_CONSTRAINT, 1);
+        gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
+        gprojt_add_linear(s, 0, 0, 1, -1, 0);
+        gprojt_add_linear(s, 1, 1, 1, 0, 0);
+        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 20, NULL) && loop.stiff && gproji_compile(s, false) == GPROJ_OK);
+        s->solving = true;
+        gproji_begin_run(&loop);
+        gproji_stiffen(&loop, c->before);
+        loop.iteration.length = c->length;
+        loop.trust.agreement = c->agreement, loop.trust.wary = c->wary, loop.trust.failed = c->failed;
+        loop.trust.restless = c->restless, loop.trust.left = c->left;
+        loop.standing.merit = c->merit, loop.standing.energy = 0, loop.standing.residual = c->residual;
+        gproji_adapt_stiffness(&loop);
+        s->solving = false;
+        GPROJT_NEAR(s->stiffness, c->after, 1e-15);
+        GPROJT_NEAR(s->group[1].weight, c->after, 1e-15);
+        gproj_system_destroy(s);
+    }
+}
+
+/* A chain of six points, 1.5 from each other along the x axis, which are to be 1 apart. */
+static gproj_system *gprojt_chain(const gproj_host *host) {
+    gproj_system *s = gproj_system_create(host);
+    double x[18];
+    int32_t k;
+    if (!s) return NULL;
+    for (k = 0; k < 18; ++k) x[k] = k % 3 ? 0.1 * (k % 4) : 0.5 * k;
+    gproj_system_add_variables(s, 18, 3, x);
+    gprojt_add_group(s, "chain", GPROJ_CONSTRAINT, 1);
+    for (k = 0; k < 5; ++k) gprojt_add_distance(s, 0, 3 * k, 3 * k + 3, 3, 1, k);
+    return s;
+}
+
+/* Steps begin stiff, and the metric rests at the end. They are found by multipliers all the time, as the metric's rows, which
+   have a single variable each, are no elements. */
+GPROJT_TEST(metrics_rest_at_the_end) {
+    gproj_system *s = gprojt_chain(NULL);
+    gproj_result result;
+    int32_t k, i;
+    gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
+    for (k = 0; k < 18; ++k) gprojt_add_linear(s, 1, k, 0.1, 0, 0);
+    result = gproj_system_solve(s, 60, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 1);
+    GPROJT_CHECK(s->schur.on && s->stiffness == 0);
+    for (k = 0; k < 5; ++k) {
+        const double *a = gproj_system_values(s) + 3 * k;
+        double square = 0;
+        for (i = 0; i < 3; ++i) square += (a[i + 3] - a[i]) * (a[i + 3] - a[i]);
+        GPROJT_NEAR(square, 1, 1e-12);
+    }
+    gproj_system_destroy(s);
+}
+
+/* Below a residual at which rounding decides, attempts that fail do not make steps stiffer, which is no help. */
+GPROJT_TEST(no_stiffness_at_the_end) {
+    static const double x[2] = {0, 2};
+    static const gproj_term term[2] = {{0, 0, 1}, {0, -1, 1}};
+    int32_t far;
+    for (far = 0; far < 2; ++far) {
+        gproj_system *s = gprojt_system(NULL, 2, 1, x);
+        gproj_result result;
+        gprojt_add_group(s, "held", GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "far", GPROJ_WISH, 1);
+        gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
+        gprojt_add_linear(s, 0, 1, 1, far ? -3 : -2 - 1e-8, 0);
+        gproj_system_add_row(s, 1, 2, term, 1e153, 0); /* see undamped_steps_that_overflow */
+        gprojt_add_linear(s, 2, 1, 1, 0, 0);
+        result = gproj_system_solve(s, 9, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0);
+        GPROJT_CHECK(far ? s->stiffness > 1 : s->stiffness == 1);
+        GPROJT_CHECK(gproj_system_values(s)[0] == 0 && gproj_system_values(s)[1] == 2);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Safeguards give way before a solve ends for lack of progress: twice, and then their weight is gone. */
+GPROJT_TEST(safeguards_give_way) {
+    int32_t safe, last[2];
+    for (safe = 0; safe < 2; ++safe) {
+        gproj_system *s = gprojt_conflict();
+        int32_t group = gprojt_add_role(s, "safe", GPROJ_BOUND, safe ? GPROJI_SAFEGUARD : GPROJI_ORDINARY);
+        gproj_result result;
+        gprojt_add_linear(s, group, 0, 1, 10, 0);
+        result = gproj_system_solve(s, 200, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED);
+        GPROJT_CHECK(s->yield == (safe ? GPROJI_YIELD_LAST : GPROJI_YIELD_SLOWLY));
+        GPROJT_CHECK(gproj_system_group_info(s, group).schedule.weight == (safe ? 0 : 1));
+        last[safe] = result.iterations;
+        gproj_system_destroy(s);
+    }
+    GPROJT_CHECK(last[1] > last[0] && last[1] < 200);
+}
+
+/* A guard's row that is violated at the start gets a multiplier at once. */
+static bool gprojt_wake_at_the_start(const gproj_host *host, void *user) {
+    static const gproj_term sum[2] = {{0, -1, 1}, {15, -1, 1}};
+    gproj_system *s = gprojt_chain(host);
+    gproj_result result;
+    int32_t group;
+    (void)user;
+    if (!s) return false;
+    group = gprojt_add_group(s, "guard", GPROJ_BOUND, 1);
+    if (group >= 0) gproji_declare_role(s, group, GPROJI_GUARD);
+    gproj_system_add_row(s, group, 2, sum, -9, -1); /* x_0 + x_5 >= 9, which are 7.5 */
+    result = gproj_system_solve(s, 30, NULL);
+    if (result.outcome == GPROJ_FAILED) {
+        GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_MEMORY);
+    } else {
+        const double *x = gproj_system_values(s);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && s->schur.on && !s->group[1].row[0].dormant);
+        GPROJT_CHECK(x[0] + x[15] > 8.9);
+    }
+    gproj_system_destroy(s);
+    return result.outcome != GPROJ_FAILED;
+}
+
+GPROJT_TEST(guards_wake_without_memory) {
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_wake_at_the_start, NULL) >= 30);
 }
 
 /* -- what a callback changes -- */
@@ -1215,11 +1555,16 @@ int main(void) {
     GPROJT_RUN(time_out);
     GPROJT_RUN(seconds_add_up);
     GPROJT_RUN(failed_by_an_error_on_the_way);
+    GPROJT_RUN(failed_by_an_error_of_a_callback);
+    GPROJT_RUN(refused_slides);
     GPROJT_RUN(callbacks_may_not_rebuild);
     GPROJT_RUN(values_that_are_no_numbers);
     GPROJT_RUN(rows_that_overflow);
     GPROJT_RUN(steps_that_overflow);
+    GPROJT_RUN(undamped_steps_that_overflow);
+    GPROJT_RUN(patience_ends_where_constraints_hold);
     GPROJT_RUN(no_verdict_before_schedules_end);
+    GPROJT_RUN(wishes_that_no_step_serves);
     GPROJT_RUN(not_positive_definite);
     GPROJT_RUN(steps_that_raise_the_merit_are_damped);
     GPROJT_RUN(steps_are_lengthened_near_singular_points);
@@ -1235,12 +1580,18 @@ int main(void) {
     GPROJT_RUN(tolerance_follows_the_size_of_x);
     GPROJT_RUN(tolerance_has_an_upper_limit);
     GPROJT_RUN(tolerance_knows_large_terms);
+    GPROJT_RUN(tolerance_of_global_rows);
     GPROJT_RUN(wishes_alone);
     GPROJT_RUN(words_for_every_place);
     GPROJT_RUN(sentences);
     GPROJT_RUN(one_group_is_no_conflict);
     GPROJT_RUN(a_wish_that_never_fades);
     GPROJT_RUN(weights_below_epsilon);
+    GPROJT_RUN(stiffness_of_the_next_step);
+    GPROJT_RUN(metrics_rest_at_the_end);
+    GPROJT_RUN(no_stiffness_at_the_end);
+    GPROJT_RUN(safeguards_give_way);
+    GPROJT_RUN(guards_wake_without_memory);
     GPROJT_RUN(changes_of_a_callback_are_judged);
     GPROJT_RUN(changes_of_a_callback_come_before_stalling);
     GPROJT_RUN(int32_max_iterations);

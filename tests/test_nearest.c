@@ -541,6 +541,133 @@ GPROJT_TEST(honest_verdicts) {
     gproj_mesh_destroy(mesh);
 }
 
+/* x_2 = 0 and (x_0^2 - 2)^2 + x_1^2 small: the constraint holds at once, and the wishes take a while. */
+static gproj_system *gprojt_well(const gproj_host *host, double weight) {
+    static const double x[3] = {5, 3, 1};
+    gproj_system *s = gproj_system_create(host);
+    gproj_term square = gprojt_term(0, 0, 1);
+    gproj_system_add_variables(s, 3, 3, x);
+    gprojt_add_group(s, "plane", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "well", GPROJ_WISH, weight);
+    gprojt_add_linear(s, 0, 2, 1, 0, 0);
+    gproj_system_add_row(s, 1, 1, &square, -2, 0);
+    gprojt_add_linear(s, 1, 1, 1, 0, 1);
+    return s;
+}
+
+static double gprojt_second(void *user) { return ++*(double *)user; }
+
+typedef struct gprojt_meddling {
+    int32_t at;
+    double coefficient, constant; /* of the row x_1 then */
+    bool go_on;
+} gprojt_meddling;
+
+static bool gprojt_meddle(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    const gprojt_meddling *m = (const gprojt_meddling *)user;
+    if (iteration->number != m->at) return true;
+    if (m->go_on) gproj_system_set_row(s, 1, 1, &m->coefficient, m->constant);
+    return m->go_on;
+}
+
+/* If the constraints hold this is said first, and then how the solve ended. */
+GPROJT_TEST(sentences_where_constraints_hold) {
+    gproj_solve_options options = gprojt_nearest();
+    gprojt_meddling meddling = {3, 0, 0, false};
+    double now = 0;
+    gproj_host host;
+    gproj_system *s = gprojt_well(NULL, 1);
+    gproj_result result;
+    options.on_iteration = gprojt_meddle, options.user = &meddling;
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 3);
+    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance, cancelled by the caller: 3 iterations") != NULL);
+    gproj_system_destroy(s);
+    memset(&host, 0, sizeof host);
+    host.clock.now = gprojt_second, host.clock.user = &now;
+    s = gprojt_well(&host, 1);
+    options = gprojt_nearest();
+    options.time_budget = 15;
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && result.iterations > 0 && result.residual <= result.tolerance);
+    GPROJT_CHECK(strstr(result.message, "but the time budget ran out before a minimum of the wishes") != NULL);
+    gproj_system_destroy(s);
+}
+
+/* Wishes that the callback changes on the way are those that count; one that no step can serve ends the solve. */
+GPROJT_TEST(wishes_that_change_on_the_way) {
+    gprojt_meddling meddling = {0, 1, -7, true};
+    int32_t k;
+    for (meddling.at = 1; meddling.at < 6; ++meddling.at) {
+        gproj_system *s = gprojt_well(NULL, 1);
+        gproj_solve_options options = gprojt_nearest();
+        gproj_result result;
+        options.on_iteration = gprojt_meddle, options.user = &meddling;
+        result = gproj_system_solve(s, 60, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(gproj_system_values(s)[0], sqrt(2), 1e-5);
+        GPROJT_NEAR(gproj_system_values(s)[1], 7, 1e-5);
+        GPROJT_NEAR(gproj_system_values(s)[2], 0, 1e-13);
+        gproj_system_destroy(s);
+    }
+    for (k = 0; k < 2; ++k) {
+        gprojt_meddling faint = {3, k ? 1e-160 : 1e30, 1e300, true};
+        gproj_system *s = gprojt_well(NULL, 1);
+        gproj_solve_options options = gprojt_nearest();
+        gproj_result result;
+        options.on_iteration = gprojt_meddle, options.user = &faint, options.epsilon = 1e-150;
+        result = gproj_system_solve(s, 60, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 3);
+        GPROJT_CHECK(fabs(gproj_system_values(s)[0]) < 10 && fabs(gproj_system_values(s)[1]) < 10);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Wishes without weight ask for nothing, and neither do rows without weight, be they bounds. */
+GPROJT_TEST(without_weight) {
+    gproj_system *s = gprojt_well(NULL, 0);
+    gproj_result result = gprojt_solve_nearest(s, 30);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality == 0);
+    GPROJT_NEAR(gproj_system_values(s)[0], 5, 0.1);
+    GPROJT_NEAR(gproj_system_values(s)[2], 0, 1e-13);
+    gproj_system_destroy(s);
+    {
+        static const double ball[3] = {1, 1, 1}, wish[3] = {0.9, 1.2, 0};
+        int32_t k, i, bounds;
+        for (k = 0; k < 10; ++k) {
+            double start[3];
+            for (i = 0; i < 3; ++i) start[i] = 0.1 * k * wish[i] + (i == 2 ? 0.3 : 0);
+            s = gprojt_one_point(start, wish, 1);
+            bounds = gprojt_add_ellipsoid(s, GPROJ_BOUND, ball, -1);
+            gprojt_add_linear(s, bounds, 0, -1, 0.1, 1); /* x_0 <= 0.1 */
+            gprojt_add_linear(s, 0, 0, 1, 100, 1);       /* far off */
+            gproj_system_set_row_weight(s, bounds, 1, 0);
+            gproj_system_set_row_weight(s, 0, 3, 0);
+            result = gprojt_solve_nearest(s, 60);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+            GPROJT_NEAR(gproj_system_values(s)[0], 0.6, 1e-5);
+            GPROJT_NEAR(gproj_system_values(s)[1], 0.8, 1e-5);
+            GPROJT_NEAR(gproj_system_values(s)[2], 0, 1e-5);
+            gproj_system_destroy(s);
+        }
+    }
+}
+
+/* A start so far away that the squares of the wishes are beyond all numbers: no step is known to be good, and none is taken. */
+GPROJT_TEST(wishes_beyond_all_numbers) {
+    static const double start[3] = {1e200, -1e200, 3}, wish[3] = {1, 2, 3};
+    gproj_system *s = gprojt_one_point(start, wish, 1);
+    gproj_result result;
+    gprojt_add_group(s, "plane", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 1, 2, 1, 0, 0);
+    result = gprojt_solve_nearest(s, 0);
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && !(result.optimality < 1e300));
+    result = gprojt_solve_nearest(s, 60);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && result.residual == 3);
+    GPROJT_CHECK(!memcmp(gproj_system_values(s), start, sizeof start));
+    gproj_system_destroy(s);
+}
+
 /* A wish that stays on does not keep the constraints from holding, and is served better than by guiding alone. */
 GPROJT_TEST(wishes_stay_on) {
     gproj_result result[2];
@@ -668,6 +795,10 @@ int main(void) {
     GPROJT_RUN(nothing_to_do);
     GPROJT_RUN(same_bits_for_all_crews);
     GPROJT_RUN(honest_verdicts);
+    GPROJT_RUN(sentences_where_constraints_hold);
+    GPROJT_RUN(wishes_that_change_on_the_way);
+    GPROJT_RUN(without_weight);
+    GPROJT_RUN(wishes_beyond_all_numbers);
     GPROJT_RUN(wishes_stay_on);
     GPROJT_RUN(closeness_rests_where_it_is_not_wanted);
     GPROJT_RUN(faces_without_area);

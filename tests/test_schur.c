@@ -509,7 +509,10 @@ GPROJT_TEST(large_fronts) {
     }
     GPROJT_CHECK(gprojt_plain_step_error(s, 0.1) < 1e-9);
     GPROJT_CHECK(s->schur.on);
-    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) most = gproji_max(most, s->cholesky->symbolic.front[f].width + s->cholesky->symbolic.front[f].below);
+    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
+        const gproji_front *front = &s->cholesky->symbolic.front[f];
+        most = gproji_max(most, front->width + front->below);
+    }
     GPROJT_CHECK(most > 256);
     gproj_system_destroy(s);
 }
@@ -870,6 +873,36 @@ GPROJT_TEST(no_allocation_after_the_first_iteration) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A drag after steps by multipliers: it needs the matrix for all variables, and so another analysis. */
+static bool gprojt_drag_after(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 5, 0.05);
+    gproj_form *form = gproj_form_create(mesh, host);
+    bool whole = false;
+    (void)user;
+    if (form) gprojt_build(form, mesh, 1, 0);
+    if (form && gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED) {
+        int32_t v = gprojt_middle(mesh), k;
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        double to[3];
+        gproj_error error;
+        gproj_drag *drag;
+        GPROJT_CHECK(gprojt_is_on(form));
+        drag = gproj_drag_begin(form, &handles, NULL, &error);
+        GPROJT_CHECK(drag || error.code == GPROJ_ERROR_MEMORY);
+        for (k = 0; k < 3; ++k) to[k] = mesh->position[3 * v + k] + (k == 2 ? 0.1 : 0);
+        whole = drag && gproj_drag_move(drag, to) == GPROJ_OK;
+        if (whole) GPROJT_NEAR(mesh->position[3 * v + 2], to[2], 1e-9);
+        if (drag) whole = gproj_drag_end(drag).outcome != GPROJ_FAILED && whole;
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return whole;
+}
+
+GPROJT_TEST(drags_after_multipliers_without_memory) {
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_drag_after, NULL) >= 100);
+}
+
 GPROJT_TEST(every_allocation_may_fail) {
     gproj_mesh *mesh = gprojt_warped(GPROJT_QUADS, 4, 0.05);
     gproj_solve_options options;
@@ -1119,6 +1152,7 @@ int main(void) {
     GPROJT_RUN(same_bytes_on_any_number_of_threads);
     GPROJT_RUN(no_allocation_after_the_first_iteration);
     GPROJT_RUN(every_allocation_may_fail);
+    GPROJT_RUN(drags_after_multipliers_without_memory);
     GPROJT_RUN(states_go_on_in_forms_with_another_past);
     GPROJT_RUN(frames_of_nearest_solves_may_be_disturbed);
     GPROJT_RUN(bad_faces);

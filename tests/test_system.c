@@ -963,6 +963,9 @@ GPROJT_TEST(empty_systems) {
     result = gproj_system_solve(s, 5, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_STALLED || result.outcome == GPROJ_ITERATION_LIMIT);
     GPROJT_CHECK(result.residual == 2 && result.worst_group == 0 && result.worst_element == 7);
+    gproj_system_set_row(s, 0, 0, NULL, 1e200); /* whose square is no number, so that there is no step either */
+    result = gproj_system_solve(s, 5, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.residual == 1e200 && result.iterations == 0);
     gproj_system_destroy(s);
     s = gproj_system_create(NULL); /* variables in no row stay where they are */
     gproj_system_add_variables(s, 2, 1, x);
