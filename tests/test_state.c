@@ -688,6 +688,37 @@ GPROJT_TEST(each_byte_forged) {
     }
 }
 
+/* A nearest solve's state needs an analysis in a form that has made none; a wrong one is refused before. */
+GPROJT_TEST(wrong_states_are_not_analysed) {
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL), *fresh;
+    gproj_solve_options options;
+    double right = 1.7319939418e-9, wrong = -1, *start = gprojt_keep(mesh);
+    uint8_t *state;
+    size_t size, i;
+    int32_t k;
+    memset(&options, 0, sizeof options);
+    options.nearest = true, options.tolerance = right;
+    GPROJT_CHECK(gproj_solve_begin(form, GPROJT_ITERATIONS, &options, NULL));
+    for (k = 0; k < 3; ++k) gproj_solve_advance(form, 0);
+    state = gprojt_save(form, &size);
+    gproj_form_destroy(form);
+    for (i = 24; memcmp(state + i, &right, 8) != 0; ++i) continue;
+    for (k = 0; k < 2; ++k) {
+        gproj_code code;
+        gprojt_put_back(mesh, start);
+        fresh = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+        memcpy(state + i, k ? &right : &wrong, 8);
+        gprojt_seal(state, size);
+        code = gproj_state_restore(fresh, state, size, NULL);
+        GPROJT_CHECK(code == (k ? GPROJ_OK : GPROJ_ERROR_SYNTAX));
+        GPROJT_CHECK((gprojt_inside_factor(gproj_form_system(fresh)).columns > 0) == (k == 1));
+        gproj_form_destroy(fresh);
+    }
+    free(state), free(start);
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- ranges: a number that stands once in a state is found by its bits, and replaced -- */
 
 static bool gprojt_takes(gproj_form *form, const uint8_t *state, size_t size, const void *old, const void *other,
@@ -1073,6 +1104,7 @@ int main(void) {
     GPROJT_RUN(groups_of_nobody_are_refused);
     GPROJT_RUN(saving_hides_no_additions);
     GPROJT_RUN(each_byte_forged);
+    GPROJT_RUN(wrong_states_are_not_analysed);
     GPROJT_RUN(numbers_out_of_range);
     GPROJT_RUN(eighths_out_of_range);
     GPROJT_RUN(solved_again_after_a_restore);
