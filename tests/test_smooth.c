@@ -195,6 +195,40 @@ GPROJT_TEST(steps_that_take_corners_are_refused) {
     }
 }
 
+/* A step is refused that takes half of an edge and leaves less than a fifth of what it was when the solve began: a square
+   becomes a rectangle of equal area, whose corners are no reason. */
+GPROJT_TEST(steps_that_take_edges_are_refused) {
+    static const double way[5][2] = {{1, 0.21}, {1, 0.19}, {1, 0.05}, {0.3, 0.16}, {0.3, 0.14}};
+    static const bool refused[5] = {false, true, true, false, true};
+    static const int32_t corner = 3;
+    gproj_solve_options options = gprojt_smooth();
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(1, 1));
+    double square[12], target[3] = {0, 0, 1}, values[2][32];
+    gproj_system *system;
+    gproj_form *form;
+    int32_t i, k, end;
+    for (i = 0; i < 4; ++i) mesh->position[3 * i + 2] = 0;
+    form = gproj_form_create(mesh, NULL);
+    system = gproj_form_system(form);
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, 1, &corner, target, 1); /* something to do */
+    GPROJT_REQUIRE(gproj_system_variable_count(system) <= 32 && gproj_solve_begin(form, 10, &options, NULL));
+    for (end = 0; end < 2; ++end)
+        memcpy(values[end], gproj_system_values(system), (size_t)gproj_system_variable_count(system) * sizeof(double));
+    memcpy(square, values[0], sizeof square); /* about the origin */
+    gproj_solve_advance(form, 0);
+    for (k = 0; k < 2; ++k) /* along x, along y */
+        for (i = 0; i < 10; ++i) {
+            double part = way[i / 2][i % 2];
+            int32_t c;
+            for (c = 0; c < 12; ++c)
+                values[i % 2][c] = square[c] * (c % 3 == k ? part : c % 3 == 1 - k ? 1 / part : 1);
+            if (i % 2) GPROJT_CHECK(gprojt_inside_refuses(form, values[0], values[1]) == refused[i / 2]);
+        }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
 GPROJT_TEST(steps_are_bent) {
     static const int32_t sizes[3] = {6, 11, 16};
@@ -389,6 +423,52 @@ GPROJT_TEST(later_attempts_end_early) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
         free(before);
+    }
+}
+
+typedef struct gprojt_meddler {
+    int32_t calls, add_at;
+    bool added;
+} gprojt_meddler;
+
+static void gprojt_meddle(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
+    gprojt_meddler *meddler = (gprojt_meddler *)user;
+    static const gproj_term x = {0, -1, 1};
+    (void)progress;
+    if (++meddler->calls == meddler->add_at)
+        meddler->added = gproj_system_add_row(system, group, 1, &x, 0, 0) >= 0;
+}
+
+/* The last refresh is that with which the mesh returns to an earlier attempt, the best one: nothing may be added then,
+   either. */
+GPROJT_TEST(nothing_is_added_on_the_way_back) {
+    int32_t last = 0, pass;
+    for (pass = 0; pass < 2; ++pass) {
+        gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+        gproj_solve_options options = gprojt_smooth();
+        gprojt_attempts seen = {0, 0, 0, true};
+        gprojt_meddler meddler = {0, 0, false};
+        gproj_term zero = {0, -1, 1}; /* the group's row: an unknown of its own is 0 */
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_group group;
+        gproj_result result;
+        memset(&group, 0, sizeof group);
+        group.name = "meddler", group.kind = GPROJ_CONSTRAINT, group.schedule = gproj_keep(1);
+        group.refresh = gprojt_meddle, group.refresh_user = &meddler;
+        gprojt_add_impossible(form, mesh);
+        zero.i = gproj_system_add_variables(gproj_form_system(form), 1, 1, NULL);
+        gproj_system_add_row(gproj_form_system(form), gproj_system_add_group(gproj_form_system(form), &group), 1, &zero,
+                             0, -1);
+        meddler.add_at = last;
+        options.on_iteration = gprojt_count_iterations, options.user = &seen;
+        result = gproj_solve(form, 200, &options);
+        GPROJT_CHECK(result.attempts == 3 && result.iterations < seen.last); /* not the last one */
+        GPROJT_CHECK(meddler.calls == last || pass == 0);
+        GPROJT_CHECK(!meddler.added && (gproj_form_error(form)->code == GPROJ_OK) == (pass == 0));
+        last = meddler.calls;
+        GPROJT_CHECK(last > 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
     }
 }
 
@@ -830,6 +910,7 @@ int main(void) {
     GPROJT_RUN(corners_are_let_go);
     GPROJT_RUN(triangles_are_not_bent);
     GPROJT_RUN(steps_that_take_corners_are_refused);
+    GPROJT_RUN(steps_that_take_edges_are_refused);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
@@ -837,6 +918,7 @@ int main(void) {
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(later_attempts_end_early);
+    GPROJT_RUN(nothing_is_added_on_the_way_back);
     GPROJT_RUN(ends_are_compared);
     GPROJT_RUN(frames_and_states);
     GPROJT_RUN(forged_corners_are_refused);
