@@ -914,6 +914,58 @@ GPROJT_TEST(refreshes_that_fail_in_a_move) {
     gprojt_clear_stage(&stage);
 }
 
+/* A row that is harmless below a height of the dragged vertex, and has a coefficient beyond all measure above it. */
+typedef struct gprojt_ceiling {
+    int32_t coordinate;
+    double most;
+} gprojt_ceiling;
+
+static void gprojt_refresh_ceiling(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
+    const gprojt_ceiling *ceiling = (const gprojt_ceiling *)user;
+    double a = gproj_system_values(system)[ceiling->coordinate] > ceiling->most ? 1e200 : 1;
+    (void)progress;
+    gproj_system_set_row(system, group, 0, &a, 0);
+}
+
+/* A move that cannot be made changes nothing of what comes after it: back at the handle's place the mesh is where it was,
+   with what it lacked to be planar. */
+GPROJT_TEST(moves_that_are_undone) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+    gproj_system *system = gproj_form_system(stage.form);
+    int32_t v = gprojt_middle(stage.mesh);
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gprojt_ceiling ceiling;
+    gproj_drag_options options;
+    gproj_group group;
+    gproj_drag *drag;
+    double *kept, p[3], residual, bound;
+    memset(&options, 0, sizeof options);
+    memset(&group, 0, sizeof group);
+    ceiling.coordinate = 3 * v + 2, ceiling.most = HUGE_VAL;
+    group.name = "ceiling", group.schedule = gproj_keep(1);
+    group.refresh = gprojt_refresh_ceiling, group.refresh_user = &ceiling;
+    gprojt_add_linear(system, gproj_system_add_group(system, &group), gproj_system_add_variables(system, 1, 1, NULL), 1, 0,
+                      -1);
+    options.residual_bound = bound = 0.02;
+    drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    gprojt_pull(&stage, drag, v, 0.1 * stage.edge);
+    kept = gprojt_keep(stage.mesh);
+    residual = gproj_drag_residual(drag);
+    GPROJT_CHECK(residual > 0.05 * bound && residual < bound && gproj_drag_get_info(drag).linearisations == 1);
+    ceiling.most = gproj_system_values(system)[3 * v + 2] + 0.1;
+    memcpy(p, stage.start + 3 * v, sizeof p);
+    p[2] += 4 * stage.edge;
+    GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER && gprojt_unmoved(stage.mesh, kept));
+    GPROJT_CHECK(gproj_drag_get_info(drag).freedom == 3);
+    gprojt_pull(&stage, drag, v, 0.1 * stage.edge);
+    GPROJT_CHECK(gprojt_largest_move(stage.mesh->position, kept, stage.mesh->vertex_count) < 1e-11);
+    GPROJT_NEAR(gproj_drag_residual(drag), residual, 1e-11);
+    gproj_drag_cancel(drag);
+    free(kept);
+    gprojt_clear_stage(&stage);
+}
+
 GPROJT_TEST(misused) {
     gprojt_stage stage = gprojt_set_stage(gprojt_roof(5, 0.05), GPROJT_PLANAR, NULL);
     int32_t v = gprojt_middle(stage.mesh);
@@ -1031,6 +1083,7 @@ GPROJT_TEST(releases_in_frames) {
                 GPROJT_CHECK(gproj_solve_is_on(stage.form) == (frames == 2) && k > 1);
             }
             result = gproj_drag_end(drag);
+            GPROJT_CHECK(strstr(gproj_solve_advance(stage.form, 0).message, "nothing is under way"));
             state = gprojt_save(stage.form, &more);
             if (frames == 0) {
                 wanted = state, size = more, first = result;
@@ -1166,6 +1219,7 @@ static bool gprojt_use_drag(const gproj_host *host, void *user) {
         GPROJT_CHECK(whole || (error.code == GPROJ_ERROR_MEMORY && gprojt_unmoved(mesh, before)));
         if (drag) whole = gproj_find_reach(form, v, 1e9, list, weight) > 0;
         if (drag) gproj_drag_move(drag, mesh->position);
+        if (drag) GPROJT_CHECK(gproj_drag_release(drag) == (gproj_form_error(form)->code == GPROJ_OK));
         if (drag) whole = gproj_drag_end(drag).outcome != GPROJ_FAILED;
         GPROJT_CHECK(whole || gprojt_unmoved(mesh, before));
     }
@@ -1229,6 +1283,7 @@ int main(void) {
     GPROJT_RUN(refused_in_a_solve);
     GPROJT_RUN(unknowns_without_start);
     GPROJT_RUN(refreshes_that_fail_in_a_move);
+    GPROJT_RUN(moves_that_are_undone);
     GPROJT_RUN(misused);
     GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
