@@ -2882,6 +2882,28 @@ GPROJT_TEST(beyond_all_coordinates) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A square with corners at the largest coordinates that there are, 1e70, and edges of 2^200, so that nothing is rounded: it
+   may stay there. */
+GPROJT_TEST(at_the_largest_coordinates) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    double *before, low = 1e70 - ldexp(1, 200);
+    memset(&soup, 0, sizeof soup);
+    gprojt_add_vertex(&soup, low, low, 0), gprojt_add_vertex(&soup, 1e70, low, 0);
+    gprojt_add_vertex(&soup, 1e70, 1e70, 0), gprojt_add_vertex(&soup, low, 1e70, 0);
+    gprojt_add_quad(&soup, 0, 1, 2, 3);
+    mesh = gprojt_mesh_of(soup);
+    before = gprojt_keep(mesh);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    GPROJT_CHECK(gproj_solve(form, 10, NULL).outcome == GPROJ_CONVERGED && gprojt_unmoved(mesh, before));
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(builders);
     GPROJT_RUN(gradients_of_everything);
@@ -2966,5 +2988,6 @@ int main(void) {
     GPROJT_RUN(every_allocation_of_builders_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
     GPROJT_RUN(beyond_all_coordinates);
+    GPROJT_RUN(at_the_largest_coordinates);
     return gprojt_report();
 }

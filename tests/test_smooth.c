@@ -229,6 +229,61 @@ GPROJT_TEST(steps_that_take_edges_are_refused) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Two flat faces whose normals are at a right angle or more may be folded on, here to 130 degrees; others are kept from it
+   for a while. */
+GPROJT_TEST(right_angles_are_let_go) {
+    static const double turns[3] = {90, 92, 80}; /* degrees between the normals when the solve begins */
+    static const int32_t free_end[2] = {4, 5};
+    int32_t iterations[3], i;
+    for (i = 0; i < 3; ++i) {
+        gprojt_soup soup;
+        gproj_solve_options options = gprojt_smooth();
+        double c = i == 0 ? 0 : cos(turns[i] * acos(-1.0) / 180), s = i == 0 ? 1 : sin(turns[i] * acos(-1.0) / 180);
+        double target[6] = {0, 0, 0, 0, 1, 0};
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        memset(&soup, 0, sizeof soup);
+        gprojt_add_vertex(&soup, 1, 0, 0), gprojt_add_vertex(&soup, 1, 1, 0);
+        gprojt_add_vertex(&soup, 0, 1, 0), gprojt_add_vertex(&soup, 0, 0, 0);
+        gprojt_add_vertex(&soup, -c, 0, s), gprojt_add_vertex(&soup, -c, 1, s);
+        gprojt_add_quad(&soup, 0, 1, 2, 3), gprojt_add_quad(&soup, 3, 2, 5, 4);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, 4, NULL, 1);
+        target[0] = target[3] = cos(50 * acos(-1.0) / 180), target[2] = target[5] = sin(50 * acos(-1.0) / 180);
+        gproj_add_targets(form, 2, free_end, target, 1);
+        result = gproj_solve(form, 100, &options);
+        iterations[i] = result.iterations;
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(iterations[0] == iterations[1] && iterations[0] < iterations[2]);
+}
+
+/* A solve before anything was added is as if it had not been. */
+GPROJT_TEST(nothing_to_solve_before) {
+    gproj_solve_options options = gprojt_smooth();
+    gproj_mesh *mesh[2];
+    gproj_result result[2];
+    int32_t i;
+    for (i = 0; i < 2; ++i) {
+        gproj_form *form;
+        mesh[i] = gprojt_twisted(6, 0.2);
+        form = gproj_form_create(mesh[i], NULL);
+        if (i == 1) GPROJT_CHECK(gproj_solve(form, 10, &options).outcome == GPROJ_CONVERGED);
+        gprojt_add_planar(form, NULL);
+        result[i] = gproj_solve(form, 100, &options);
+        GPROJT_CHECK(gprojt_is_sound(&result[i]));
+        gproj_form_destroy(form);
+    }
+    GPROJT_CHECK(result[0].iterations == result[1].iterations);
+    GPROJT_CHECK(gprojt_largest_move(mesh[0]->position, mesh[1]->position, mesh[0]->vertex_count) < 1e-8);
+    gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
 /* The path to circles is narrow and curved: straight steps need 13 to 25 iterations here, bent ones at most 9. */
 GPROJT_TEST(steps_are_bent) {
     static const int32_t sizes[3] = {6, 11, 16};
@@ -911,6 +966,8 @@ int main(void) {
     GPROJT_RUN(triangles_are_not_bent);
     GPROJT_RUN(steps_that_take_corners_are_refused);
     GPROJT_RUN(steps_that_take_edges_are_refused);
+    GPROJT_RUN(right_angles_are_let_go);
+    GPROJT_RUN(nothing_to_solve_before);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
