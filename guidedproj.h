@@ -11776,7 +11776,6 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
         if (curved && loop->iteration.factorisations == GPROJI_NEAREST_ATTEMPTS) {
-            loop->shift = shift;
             curved = false;
             shift = 0;
         }
