@@ -461,7 +461,8 @@ GPROJT_TEST(later_attempts_end_early) {
         gprojt_add_impossible(form, mesh);
         if (way == 0) { /* how long is the first attempt? */
             GPROJT_CHECK(gproj_solve_begin(form, 200, &options, NULL));
-            while (gproj_solve_is_on(form)) result = gproj_solve_advance(form, 0);
+            do result = gproj_solve_advance(form, 0);
+            while (gproj_solve_is_on(form));
             first = result.iterations;
             GPROJT_CHECK(result.outcome == GPROJ_STALLED && first > 3);
             gprojt_put_back(mesh, before);
