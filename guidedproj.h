@@ -2613,8 +2613,7 @@ GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *for
         case 'l': length = gproji_append_integer(text, size, length, va_arg(list, int64_t)); break;
         case 'g': {
             char number[GPROJ_NUMBER_SIZE];
-            size_t digits = gproji_number_write_digits(va_arg(list, double), 3, number);
-            length = gproji_append(text, size, length, number, digits);
+            length = gproji_append(text, size, length, number, gproji_number_write_digits(va_arg(list, double), 3, number));
             break;
         }
         }
@@ -17311,8 +17310,7 @@ GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int3
     size_t at = ints->count;
     ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, at + 4, sizeof(int32_t));
     if (ints->capacity < at + 4) return false;
-    ints->data[at] = a, ints->data[at + 1] = b, ints->data[at + 2] = c, ints->data[at + 3] = d;
-    ints->count += 4;
+    ints->data[at] = a, ints->data[at + 1] = b, ints->data[at + 2] = c, ints->data[at + 3] = d, ints->count += 4;
     return true;
 }
 
