@@ -984,6 +984,24 @@ GPROJT_TEST(any_side_may_be_first) {
     }
 }
 
+/* Two of 1,500 random curves whose fillings are untangled only by steps that are shorter than Newton's. */
+GPROJT_TEST(curves_that_need_short_steps) {
+    uint64_t state = 5;
+    int32_t tries, filled = 0;
+    for (tries = 0; tries <= 1490; ++tries) {
+        gprojt_curve c = gprojt_random_curve(&state, 2 + gprojt_below(&state, 8), tries % 3);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        if (tries != 1130 && tries != 1490) continue;
+        c.options.edge_length = 0.7;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_CHECK(mesh && gprojt_filling_is_good(&c, mesh, &info, 6));
+        gproj_mesh_destroy(mesh);
+        ++filled;
+    }
+    GPROJT_CHECK(filled == 2);
+}
+
 /* Seven corners where nothing can be cut, because the curve is so thin that cuts would run along it: the one that turns
    least, 0 at first, becomes a place on a side, whichever is the first. */
 GPROJT_TEST(the_flattest_corner_is_none) {
@@ -1110,6 +1128,7 @@ int main(void) {
     GPROJT_RUN(any_side_may_be_first);
     GPROJT_RUN(refusals_of_curves);
     GPROJT_RUN(refusals_of_options);
+    GPROJT_RUN(curves_that_need_short_steps);
     GPROJT_RUN(the_flattest_corner_is_none);
     GPROJT_RUN(a_star_with_four_edges_is_none);
     GPROJT_RUN(every_allocation_fails_once);

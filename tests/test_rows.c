@@ -403,7 +403,9 @@ GPROJT_TEST(unknowns_refused) {
     GPROJT_NEAR(value[1], mesh->position[1], 1e-12);
     GPROJT_CHECK(gproj_form_get_unknowns(form, INT32_MAX, 2, value, &error) == GPROJ_ERROR_INDEX);
     GPROJT_CHECK(gproj_form_residuals(form, 0, NULL, &error) == GPROJ_ERROR_ARGUMENT);
-    gproj_add_planarity(form, NAN); /* what a form after an error is asked is answered by this error */
+    gproj_add_planarity(form, NAN); /* what a form after an error is asked is answered by this error, the first one */
+    GPROJT_CHECK(gproj_add_rows(form, "mine", (gproj_kind)99, GPROJ_PLACE_NONE, 1) == -1);
+    GPROJT_CHECK(strstr(gproj_form_error(form)->message, "planarity"));
     GPROJT_CHECK(gproj_form_get_unknowns(form, 0, 2, value, &error) == gproj_form_error(form)->code);
     GPROJT_CHECK(!strcmp(error.message, gproj_form_error(form)->message));
     GPROJT_CHECK(gproj_form_residuals(form, 0, value, &error) == gproj_form_error(form)->code);
