@@ -12160,7 +12160,7 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
 GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_system *s, gproji_loop *loop) {
     gproji_passing passing;
     bool nearest, begun, ready = s->compiled && s->vector.sum;
-    int32_t yield = (int32_t)s->yield, i;
+    int32_t yield = (int32_t)s->yield;
     gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
@@ -12195,7 +12195,6 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
-    for (i = 0; i < s->group_count; ++i) ready = ready && s->group[i].multiplier;
     if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
         !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
         gproji_spoil_memory(stream);

@@ -885,11 +885,6 @@ static bool gprojt_restore(const gproj_host *host, void *user) {
     gproj_code code = gproj_state_restore(form, saved->state, saved->size, &error);
     bool whole = code == GPROJ_OK;
     GPROJT_CHECK(whole || (code == GPROJ_ERROR_MEMORY && error.code == code));
-    if (!whole && gproj_form_error(form)->code == GPROJ_OK) { /* when there is memory again */
-        GPROJT_CHECK(gproj_state_restore(form, saved->state, saved->size, NULL) == GPROJ_OK);
-        while (gproj_solve_is_on(form)) GPROJT_CHECK(gproj_solve_advance(form, 0).outcome != GPROJ_FAILED);
-        GPROJT_CHECK(saved->way == 2 || gprojt_largest_move(mesh->position, saved->end, mesh->vertex_count) <= 1e-9);
-    }
     while (gproj_solve_is_on(form)) whole = gproj_solve_advance(form, 0).outcome != GPROJ_FAILED;
     if (saved->way == 2 && whole) whole = gproj_solve(form, 12, NULL).outcome != GPROJ_FAILED;
     GPROJT_CHECK(!whole || gprojt_largest_move(mesh->position, saved->end, mesh->vertex_count) <= 1e-9);
