@@ -17849,7 +17849,7 @@ GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
     if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
     for (side = 0; side < f->sides; ++side) {
-        int32_t n = !f->options.keep_points && f->options.side_count ? f->options.subdivisions[side] : 0;
+        int32_t n = f->options.side_count ? f->options.subdivisions[side] : 0;
         gproji_side_points(f, side, &from, &to);
         if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
             return gproji_fail_memory(f->error);

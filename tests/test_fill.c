@@ -401,6 +401,19 @@ GPROJT_TEST(corners_that_are_flat) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. */
+GPROJT_TEST(numbers_allow_for_strips) {
+    gprojt_curve c = gprojt_half_disc();
+    gproj_fill_info info;
+    gproj_mesh *mesh;
+    c.corner[1] = 20, c.corner[2] = 70, c.given = false, c.options.edge_length = 0.2;
+    mesh = gprojt_fill(&c, &info, NULL);
+    GPROJT_REQUIRE(mesh != NULL);
+    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
+    GPROJT_CHECK(info.irregular_count == 2);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(points_of_the_curve_are_kept) {
     gprojt_curve c = gprojt_rose(4, 9, 0.2);
     gproj_fill_info info;
@@ -1106,6 +1119,7 @@ int main(void) {
     GPROJT_RUN(regular_polygons);
     GPROJT_RUN(curves_without_corners);
     GPROJT_RUN(corners_that_are_flat);
+    GPROJT_RUN(numbers_allow_for_strips);
     GPROJT_RUN(points_of_the_curve_are_kept);
     GPROJT_RUN(sides_are_divided_evenly);
     GPROJT_RUN(a_lens_has_four_edges);

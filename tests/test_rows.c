@@ -286,6 +286,22 @@ GPROJT_TEST(residuals_by_element) {
 
 /* Rows of no element, rows without weight and rows beyond all numbers, where residuals are asked for and weights given. The
    system takes any number for an element; those that the mesh does not have are none of its elements. */
+GPROJT_TEST(residuals_by_edge) {
+    static const double p[12] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, wanted[3] = {1, 2, 0.5};
+    static const int32_t degree = 4, corner[4] = {0, 1, 2, 3};
+    gproj_mesh *mesh = gproj_mesh_create(4, p, 1, &degree, corner, NULL, NULL);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t group = gproj_add_lengths(form, 3, NULL, wanted, 1);
+    double edge[4] = {9, 9, 9, 9};
+    gproj_solve(form, 0, NULL);
+    GPROJT_CHECK(gproj_form_residuals(form, group, edge, NULL) == GPROJ_OK);
+    GPROJT_CHECK(fabs(edge[0]) < 1e-15 && edge[3] == 0); /* (l^2 - d^2) / (2 d), and no row */
+    GPROJT_NEAR(edge[1], 0.75, 1e-15);
+    GPROJT_NEAR(edge[2], 0.75, 1e-15);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(rows_of_no_element) {
     static const double none[3] = {0, 0, 0};
     static const int32_t elements[] = {-1, 1000000, 2, 3, 5};
@@ -503,21 +519,26 @@ GPROJT_TEST(midspheres_begin_at_their_place) {
 
 /* Of midpoints in a plane there are many spheres: the one around their centre is chosen, in this plane. */
 GPROJT_TEST(flat_midspheres_begin_in_their_plane) {
-    gprojt_soup soup = gprojt_cube_sphere(1);
-    gproj_mesh *mesh = gprojt_soup_mesh(&soup, NULL, NULL);
-    gproj_form *form = gproj_form_create(mesh, NULL);
-    int32_t edge[4], h = mesh->face_halfedge[2], sphere = 3 * mesh->vertex_count, i, k;
-    double centre[3] = {0, 0, 0};
-    for (i = 0; i < 4; ++i, h = mesh->next[h]) {
-        edge[i] = h / 2;
-        for (k = 0; k < 3; ++k) centre[k] += mesh->position[3 * mesh->origin[h] + k] / 4;
+    int32_t face;
+    for (face = 0; face < 12; ++face) { /* of a cube, then of a box */
+        gprojt_soup soup = gprojt_cube_sphere(1);
+        gproj_mesh *mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+        gproj_form *form;
+        int32_t edge[4], h = mesh->face_halfedge[face % 6], sphere = 3 * mesh->vertex_count, i, k;
+        double centre[3] = {0, 0, 0};
+        for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] *= face < 6 ? 1 : 1 + i % 3;
+        form = gproj_form_create(mesh, NULL);
+        for (i = 0; i < 4; ++i, h = mesh->next[h]) {
+            edge[i] = h / 2;
+            for (k = 0; k < 3; ++k) centre[k] += mesh->position[3 * mesh->origin[h] + k] / 4;
+        }
+        GPROJT_CHECK(gproj_add_midsphere(form, 4, edge, 1) >= 0);
+        for (k = 0; k < 3; ++k)
+            GPROJT_NEAR(gproj_system_values(gproj_form_system(form))[sphere + k] * gprojt_unit(form), centre[k], 1e-6);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&soup);
     }
-    GPROJT_CHECK(gproj_add_midsphere(form, 4, edge, 1) >= 0);
-    for (k = 0; k < 3; ++k)
-        GPROJT_NEAR(gproj_system_values(gproj_form_system(form))[sphere + k] * gprojt_unit(form), centre[k], 1e-6);
-    gproj_form_destroy(form);
-    gproj_mesh_destroy(mesh);
-    gprojt_soup_free(&soup);
 }
 
 /* The midpoints' sphere, checked apart from the library; on a real sphere it is that one. */
@@ -593,6 +614,7 @@ int main(void) {
     GPROJT_RUN(meddling_start_values);
     GPROJT_RUN(states_and_drags_know_unknowns);
     GPROJT_RUN(residuals_by_element);
+    GPROJT_RUN(residuals_by_edge);
     GPROJT_RUN(rows_of_no_element);
     GPROJT_RUN(rows_after_weights_of_elements);
     GPROJT_RUN(wrong_rows_are_refused);

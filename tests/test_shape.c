@@ -177,6 +177,20 @@ GPROJT_TEST(volume_is_reached) {
 }
 
 /* Wishes: what they measure becomes better, with planar faces all the same. */
+/* Areas that are equal already are so in the rows, too. */
+GPROJT_TEST(equal_areas_hold_on_a_grid) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+    gproj_form *form;
+    int32_t group, v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = 0;
+    form = gproj_form_create(mesh, NULL);
+    group = gproj_add_equal_areas(form, 1);
+    gproj_solve(form, 0, NULL);
+    GPROJT_CHECK(gproj_form_group_info(form, group).rows == 16 && gproj_form_group_info(form, group).max < 1e-14);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(areas_become_more_equal) {
     gproj_mesh *mesh = gprojt_noisy(0, 8, 0.15, 4);
     gproj_form *form = gproj_form_create(mesh, NULL);
@@ -438,6 +452,7 @@ int main(void) {
     GPROJT_RUN(circular_real_meshes);
     GPROJT_RUN(volumes);
     GPROJT_RUN(volume_is_reached);
+    GPROJT_RUN(equal_areas_hold_on_a_grid);
     GPROJT_RUN(areas_become_more_equal);
     GPROJT_RUN(quads_become_parallelograms);
     GPROJT_RUN(trapezoids_become_parallelograms);
