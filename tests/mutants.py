@@ -630,11 +630,12 @@ def build(programs, sanitized, jobs):
 
 def read_equivalent():
     """mutants.txt: function | old | new | reason; or function | (kind) | * | reason, for numbers that are tuned. With `old @ text`
-    only in lines with this text. Returns the texts (without spaces; "": any line) for each function, old and new."""
+    only in lines with this text; a | of the code is written \\|. Returns the texts (without spaces; "": any line) for each
+    function, old and new."""
     path, answer = os.path.join(HERE, "mutants.txt"), {}
     if os.path.exists(path):
         for line in open(path):
-            parts = [p.strip() for p in line.split(" | ")]
+            parts = [p.strip().replace("\\|", "|") for p in line.split(" | ")]
             if len(parts) != 4 or line.startswith("#"): continue
             old, _, text = parts[1].partition(" @ ")
             answer.setdefault((parts[0], old, parts[2]), []).append("".join(text.split()))
