@@ -696,7 +696,7 @@ typedef struct gproj_solve_options {
     /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
        the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
        weights' ratios matter, and nothing is biased. If nothing is wished, gproj_solve adds closeness to the positions
-       that it begins with, and ends at the mesh nearest to these. Wants about 30 iterations; allow 60 (see gproj_solve).
+       that it begins with, and ends at the mesh nearest to these. Takes about 30 iterations, allow 60 (gproj_solve).
        Converged means here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
     bool nearest;
 } gproj_solve_options;
@@ -2613,7 +2613,8 @@ GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *for
         case 'l': length = gproji_append_integer(text, size, length, va_arg(list, int64_t)); break;
         case 'g': {
             char number[GPROJ_NUMBER_SIZE];
-            length = gproji_append(text, size, length, number, gproji_number_write_digits(va_arg(list, double), 3, number));
+            length =
+                gproji_append(text, size, length, number, gproji_number_write_digits(va_arg(list, double), 3, number));
             break;
         }
         }
@@ -5286,12 +5287,12 @@ typedef struct gproji_front {
 } gproji_front;
 
 enum {
-    GPROJI_TASK_LEVELS = 2,             /* within one level, tasks are independent */
-    GPROJI_NODES_AHEAD = 8,             /* see gproji_expect_neighbours */
-    GPROJI_FAMILY_TRIES = 64,           /* gaps that are tried before the end of the memory is taken */
-    GPROJI_DISSECT_FLOPS = 35000,       /* per node; see gproji_better_order */
-    GPROJI_DISSECT_FORECAST = 1200,     /* per node; likewise */
-    GPROJI_DISSECT_LEAST = 600,         /* nodes; smaller graphs get no forecast */
+    GPROJI_TASK_LEVELS = 2,                    /* within one level, tasks are independent */
+    GPROJI_NODES_AHEAD = 8,                    /* see gproji_expect_neighbours */
+    GPROJI_FAMILY_TRIES = 64,                  /* gaps that are tried before the end of the memory is taken */
+    GPROJI_DISSECT_FLOPS = 35000,              /* per node; see gproji_better_order */
+    GPROJI_DISSECT_FORECAST = 1200,            /* per node; likewise */
+    GPROJI_DISSECT_LEAST = 600,                /* nodes; smaller graphs get no forecast */
     GPROJI_DISSECT_MOST = GPROJI_INDEX_MAX / 4 /* nodes; coordinates are sums of distances */
 };
 

@@ -936,7 +936,8 @@ GPROJT_TEST(cholesky_arguments) {
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, backwards, row, NULL) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(gproj_cholesky_error(c)->place == GPROJ_PLACE_COLUMN && gproj_cholesky_error(c)->index == 1);
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, outside, NULL) == GPROJ_ERROR_INDEX);
-    GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "column 0 has an entry in row 2, which is not in 0..1") != NULL);
+    GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "column 0 has an entry in row 2, which is not in 0..1") !=
+                 NULL);
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, negative, NULL) == GPROJ_ERROR_INDEX);
     GPROJT_CHECK(gproj_cholesky_error(c)->index == 1);
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, row, &given) == GPROJ_ERROR_ARGUMENT);

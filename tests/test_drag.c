@@ -896,9 +896,10 @@ GPROJT_TEST(refreshes_that_fail_in_a_move) {
     bool bad = false;
     memset(&options, 0, sizeof options);
     memset(&group, 0, sizeof group);
-    group.name = "mine", group.schedule = gproj_keep(1), group.refresh = gprojt_refresh_badly, group.refresh_user = &bad;
-    gprojt_add_linear(gproj_form_system(stage.form), gproj_system_add_group(gproj_form_system(stage.form), &group), 0, 0, 0,
-                      -1);
+    group.name = "mine", group.schedule = gproj_keep(1), group.refresh = gprojt_refresh_badly,
+    group.refresh_user = &bad;
+    gprojt_add_linear(gproj_form_system(stage.form), gproj_system_add_group(gproj_form_system(stage.form), &group), 0,
+                      0, 0, -1);
     options.residual_bound = 1e-9;
     drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
     GPROJT_REQUIRE(drag);
@@ -944,8 +945,8 @@ GPROJT_TEST(moves_that_are_undone) {
     ceiling.coordinate = 3 * v + 2, ceiling.most = HUGE_VAL;
     group.name = "ceiling", group.schedule = gproj_keep(1);
     group.refresh = gprojt_refresh_ceiling, group.refresh_user = &ceiling;
-    gprojt_add_linear(system, gproj_system_add_group(system, &group), gproj_system_add_variables(system, 1, 1, NULL), 1, 0,
-                      -1);
+    gprojt_add_linear(system, gproj_system_add_group(system, &group), gproj_system_add_variables(system, 1, 1, NULL), 1,
+                      0, -1);
     options.residual_bound = bound = 0.02;
     drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
     GPROJT_REQUIRE(drag);
@@ -1079,7 +1080,8 @@ GPROJT_TEST(releases_in_frames) {
             if (frames > 0) {
                 GPROJT_CHECK(gproj_drag_release(drag) && gproj_solve_is_on(stage.form));
                 GPROJT_CHECK(gprojt_unmoved(stage.mesh, stage.start));
-                for (k = 0; gproj_solve_is_on(stage.form) && (frames == 1 || k < 2); ++k) gproj_solve_advance(stage.form, 0);
+                for (k = 0; gproj_solve_is_on(stage.form) && (frames == 1 || k < 2); ++k)
+                    gproj_solve_advance(stage.form, 0);
                 GPROJT_CHECK(gproj_solve_is_on(stage.form) == (frames == 2) && k > 1);
             }
             result = gproj_drag_end(drag);

@@ -453,8 +453,10 @@ GPROJT_TEST(first_corners_stay) {
         for (strip = 0; strip < 2; ++strip) {
             gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
             for (f = 0; f < 6; ++f) first[f] = e->origin[e->face_halfedge[f]];
-            if (strip) GPROJT_CHECK(gproj_edit_insert_strip(e, edge, 0.5, NULL) >= 0);
-            else GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14);
+            if (strip)
+                GPROJT_CHECK(gproj_edit_insert_strip(e, edge, 0.5, NULL) >= 0);
+            else
+                GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14);
             for (f = 0; f < 6; ++f) GPROJT_CHECK(e->origin[e->face_halfedge[f]] == first[f]);
             gproj_edit_destroy(e);
         }
@@ -469,8 +471,10 @@ GPROJT_TEST(polylines_grow) {
         gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
         int32_t edge = gproj_edit_edge(e, 5, 6);
         for (i = 0; i < 40; ++i) {
-            if (strips) edge = gproj_edit_insert_strip(e, edge, 0.5, NULL);
-            else GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14 + i);
+            if (strips)
+                edge = gproj_edit_insert_strip(e, edge, 0.5, NULL);
+            else
+                GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == 14 + i);
         }
         after = gprojt_edit_mesh(e);
         GPROJT_REQUIRE(after != NULL);
@@ -793,7 +797,9 @@ GPROJT_TEST(combs_spirals_darts) {
 
 /* A face of very many corners, each with its own triangle: work that grew with the square would take minutes. */
 GPROJT_TEST(a_face_of_very_many_corners) {
-    enum { MANY = 150000 };
+    enum {
+        MANY = 150000
+    };
     double *xy = (double *)malloc(2 * MANY * sizeof(double));
     gproj_edit *e;
     int32_t i;

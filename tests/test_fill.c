@@ -599,24 +599,30 @@ GPROJT_TEST(awkward_curves) {
         double xy[32];
     } curve[] = {
         /* the straight way between two tips passes a third one at 1e-9 */
-        {10, 10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, true,
-         {-1, 0, 0, -1, 1, 0, 4, -2, 4, 4, 0.5, 4, 0, 1e-9, -0.5, 4, -4, 4, -4, -2}},
+        {10, 10, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9}, true, {-1,  0, 0, -1,   1,    0, 4,  -2, 4,  4,
+                                                        0.5, 4, 0, 1e-9, -0.5, 4, -4, 4,  -4, -2}},
         /* a tip of 2 degrees, which no cut may halve */
         {4, 4, {0, 1, 2, 3}, true, {0, 0, 10, -0.2, 9, 0, 10, 0.2}},
         /* 8 corners, all cuts between which are too sharp */
-        {8, 8, {0, 1, 2, 3, 4, 5, 6, 7}, true,
+        {8,
+         8,
+         {0, 1, 2, 3, 4, 5, 6, 7},
+         true,
          {100, 0, 0, 1, -0.01, 0.7, -0.02, 0.3, -0.02, 0, -0.02, -0.3, -0.01, -0.7, 0, -1}},
         /* two corners on one side of the cut; on the other one, or none */
-        {8, 2, {0, 6}, false,
-         {0.979, 0.549, 0.351, 1.013, -0.109, 0.657, -1.443, 0.258, -0.721, -0.093, -1.245, -2.055, 0.061, -0.518, 1.265,
-          -0.859}},
-        {15, 4, {3, 6, 7, 10}, false,
-         {1.683, 0.355, 0.546, 0.410, 0.657, 1.456, 0.219, 0.834, -0.131, 0.458, -0.459, 0.642, -0.891, 0.452, -1.100,
-          0.220, -0.446, -0.095, -1.409, -1.848, -0.170, -0.408, 0.115, -0.682, 1.033, -1.737, 0.401, -0.344, 1.835, -0.379}},
+        {8,
+         2,
+         {0, 6},
+         false,
+         {0.979, 0.549, 0.351, 1.013, -0.109, 0.657, -1.443, 0.258, -0.721, -0.093, -1.245, -2.055, 0.061, -0.518,
+          1.265, -0.859}},
+        {15, 4, {3, 6, 7, 10}, false, {1.683,  0.355,  0.546,  0.410,  0.657,  1.456,  0.219,  0.834,  -0.131, 0.458,
+                                       -0.459, 0.642,  -0.891, 0.452,  -1.100, 0.220,  -0.446, -0.095, -1.409, -1.848,
+                                       -0.170, -0.408, 0.115,  -0.682, 1.033,  -1.737, 0.401,  -0.344, 1.835,  -0.379}},
         /* corners that turn back over more than 300 steps */
-        {12, 6, {0, 3, 6, 7, 8, 10}, true,
-         {1.67, 0.12, 0.28, 0.30, 0.22, 1.95, -0.04, 0.47, -1.11, 1.05, -0.75, 0.13, -0.89, -0.12, -1.01, -1.26, -0.24, -0.64,
-          0.42, -1.11, 0.32, -0.29, 1.93, -0.79}},
+        {12, 6, {0, 3, 6, 7, 8, 10}, true, {1.67,  0.12,  0.28,  0.30,  0.22,  1.95,  -0.04, 0.47,
+                                            -1.11, 1.05,  -0.75, 0.13,  -0.89, -0.12, -1.01, -1.26,
+                                            -0.24, -0.64, 0.42,  -1.11, 0.32,  -0.29, 1.93,  -0.79}},
     };
     int32_t i;
     for (i = 0; i < (int32_t)(sizeof curve / sizeof *curve); ++i) {
@@ -861,7 +867,8 @@ GPROJT_TEST(refusals_of_curves) {
         GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1, "no filling without a quad"));
     }
     c.count = 2;
-    GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3 and"));
+    GPROJT_CHECK(
+        gprojt_is_refused(&c, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "2 points; it needs at least 3 and"));
     c = gprojt_rose(4, 3, 0);
     memcpy(c.point + 15, c.point + 12, 3 * sizeof(double));
     GPROJT_CHECK(gprojt_is_refused(&c, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, 4, "points 4 and 5"));

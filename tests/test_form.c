@@ -1108,7 +1108,8 @@ static gproj_mesh *gprojt_graph(int n, double (*height)(double x, double y)) {
     int i, j;
     memset(&soup, 0, sizeof soup);
     for (j = 0; j <= n; ++j)
-        for (i = 0; i <= n; ++i) gprojt_add_vertex(&soup, (double)i / n, (double)j / n, height((double)i / n, (double)j / n));
+        for (i = 0; i <= n; ++i)
+            gprojt_add_vertex(&soup, (double)i / n, (double)j / n, height((double)i / n, (double)j / n));
     for (j = 0; j < n; ++j)
         for (i = 0; i < n; ++i) {
             int32_t v = j * (n + 1) + i, face[4] = {v, v + 1, v + n + 2, v + n + 1};
@@ -1144,7 +1145,8 @@ GPROJT_TEST(planes_that_spread_are_named) {
             }
             result = gproj_solve(form, 20, NULL);
             if (k == 0) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
-            GPROJT_CHECK(!strstr(result.message, "flat faces that keep their corners share one plane from face ") == (k > 0));
+            GPROJT_CHECK(!strstr(result.message, "flat faces that keep their corners share one plane from face ") ==
+                         (k > 0));
             if (k == 0) GPROJT_CHECK(strstr(result.message, "and others likewise") != NULL);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
@@ -1545,10 +1547,13 @@ GPROJT_TEST(rows_that_hold) {
 
 /* All kinds of damage at many places: the sentence is whole, and leaves out what it has no room for. */
 GPROJT_TEST(the_longest_verdict) {
-    static const double to[5][6] = {{1.3, 0, 0.7, 1.3, 1, 0.7}, {3, 0.7, 0, 3, 0.4, 0}, {3, 0.46, 0, 3, 0.54, 0},
-                                    {2.04, 0, 0, 2.04, 1, 0},   {8, 0, 0, 8, 1, 0}};
-    static const char *const kinds[6] = {"faces turned over",  "faces cross themselves", "edges folded",
-                                         "edges collapsed", "faces collapsed", "edges became spikes"};
+    static const double to[5][6] = {{1.3, 0, 0.7, 1.3, 1, 0.7},
+                                    {3, 0.7, 0, 3, 0.4, 0},
+                                    {3, 0.46, 0, 3, 0.54, 0},
+                                    {2.04, 0, 0, 2.04, 1, 0},
+                                    {8, 0, 0, 8, 1, 0}};
+    static const char *const kinds[6] = {"faces turned over", "faces cross themselves", "edges folded",
+                                         "edges collapsed",   "faces collapsed",        "edges became spikes"};
     gprojt_soup soup;
     gproj_mesh *mesh;
     gproj_form *form;
@@ -2430,8 +2435,9 @@ GPROJT_TEST(spheres_are_no_circles) {
             gproj_add_circularity(form, 1);
             result = gproj_solve(form, 40, NULL);
             GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
-            GPROJT_CHECK((strstr(result.message, "but 1 face is not planar, so the corners are on spheres only (face 0")
-                          != NULL) == (i == 0));
+            GPROJT_CHECK(
+                (strstr(result.message, "but 1 face is not planar, so the corners are on spheres only (face 0") !=
+                 NULL) == (i == 0));
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }

@@ -117,7 +117,8 @@ static double kkt_of(const squares *s, const double *x) {
         for (e = s->start[j]; e < s->start[j + 1]; ++e)
             near[s->row[e]] += fabs(s->value[e] * fmin(fmax(0, lower_of(s, j)), upper_of(s, j)));
     for (j = 0; j < n; ++j) {
-        double length = s->p.damping * s->p.damping, size = length * fabs(fmin(fmax(0, lower_of(s, j)), upper_of(s, j)));
+        double length = s->p.damping * s->p.damping,
+               size = length * fabs(fmin(fmax(0, lower_of(s, j)), upper_of(s, j)));
         for (e = s->start[j]; e < s->start[j + 1]; ++e) {
             length += s->value[e] * s->value[e];
             size += fabs(s->value[e]) * near[s->row[e]];
@@ -623,7 +624,8 @@ GPROJT_TEST(tiny_numbers) {
             gproj_least_squares_result r;
             for (i = 0; i < 20; ++i) t.b[i] = ldexp(t.b[i], unit);
             r = solve(&t);
-            GPROJT_CHECK(unit < -480 || (r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.factorisations == factorisations));
+            GPROJT_CHECK(unit < -480 ||
+                         (r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.factorisations == factorisations));
             for (j = 0; j < 20; ++j) {
                 GPROJT_CHECK(t.x[j] >= 0);
                 GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_LIMIT || fabs(ldexp(t.x[j], -unit) - x[j]) <= 1e-9);

@@ -94,7 +94,8 @@ GPROJT_TEST(arenas) {
     memset(&host, 0, sizeof host);
     host.allocator.allocate = gprojt_arena_allocate, host.allocator.user = &at;
     other = gprojt_soup_mesh(&grid, &host, &gprojt_last);
-    GPROJT_CHECK(mesh && other && gprojt_same_mesh(mesh, other) && at - room >= (ptrdiff_t)gproj_mesh_memory(other).used);
+    GPROJT_CHECK(mesh && other && gprojt_same_mesh(mesh, other) &&
+                 at - room >= (ptrdiff_t)gproj_mesh_memory(other).used);
     gproj_mesh_destroy(other);
     gproj_mesh_destroy(mesh);
     free(room);

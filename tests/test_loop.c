@@ -243,7 +243,8 @@ GPROJT_TEST(failed_by_an_error_on_the_way) {
     gproj_result result;
     int calls = 0;
     memset(&group, 0, sizeof group);
-    group.name = "moving", group.schedule = gproj_keep(1), group.refresh = gprojt_bad_refresh, group.refresh_user = &calls;
+    group.name = "moving", group.schedule = gproj_keep(1), group.refresh = gprojt_bad_refresh,
+    group.refresh_user = &calls;
     gproj_system_add_group(s, &group);
     gprojt_add_linear(s, 0, 0, 1, 0, 0);
     result = gproj_system_solve(s, 9, NULL);
@@ -341,7 +342,8 @@ GPROJT_TEST(refused_slides) {
             GPROJT_NEAR(gproj_system_values(s)[1], 0.8, 1e-6);
         } else {
             GPROJT_CHECK(loop.result.outcome == GPROJ_STALLED);
-            GPROJT_CHECK(strstr(loop.result.message, "all constraints hold to the tolerance, and no step serves the wishes"));
+            GPROJT_CHECK(
+                strstr(loop.result.message, "all constraints hold to the tolerance, and no step serves the wishes"));
         }
         gproj_system_destroy(s);
     }
@@ -383,7 +385,8 @@ static void gprojt_check_meddler(gprojt_meddler m) {
     memset(&options, 0, sizeof options);
     memset(&group, 0, sizeof group);
     options.on_iteration = gprojt_meddling_iteration, options.user = &m;
-    group.name = "meddler", group.schedule = gproj_keep(1), group.refresh = gprojt_meddling_refresh, group.refresh_user = &m;
+    group.name = "meddler", group.schedule = gproj_keep(1), group.refresh = gprojt_meddling_refresh,
+    group.refresh_user = &m;
     gproj_system_add_group(s, &group);
     result = gproj_system_solve(s, 5, &options);
     GPROJT_CHECK(m.answer == -1 && result.outcome == GPROJ_FAILED && gproj_system_error(s)->code == GPROJ_ERROR_STATE);

@@ -581,7 +581,8 @@ GPROJT_TEST(sentences_where_constraints_hold) {
     options.on_iteration = gprojt_meddle, options.user = &meddling;
     result = gproj_system_solve(s, 60, &options);
     GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 3);
-    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance, cancelled by the caller: 3 iterations") != NULL);
+    GPROJT_CHECK(
+        strstr(result.message, "all constraints hold to the tolerance, cancelled by the caller: 3 iterations") != NULL);
     gproj_system_destroy(s);
     memset(&host, 0, sizeof host);
     host.clock.now = gprojt_second, host.clock.user = &now;

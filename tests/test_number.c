@@ -322,8 +322,8 @@ GPROJT_TEST(write_digits_like_printf) {
     uint64_t state = 5;
     int i;
     char mine[GPROJ_NUMBER_SIZE], theirs[64];
-    static const double ties[] = {0.5,  1.5,   2.5,    0.125,      0.375,  1e-5,  9.5,
-                                  99.5, 999.5, 9999.5, 0.00099995, 5e-324, 1e300, 0,      1,     100,   1e22};
+    static const double ties[] = {0.5,    1.5,        2.5,    0.125, 0.375, 1e-5, 9.5, 99.5, 999.5,
+                                  9999.5, 0.00099995, 5e-324, 1e300, 0,     1,    100, 1e22};
     for (i = 0; i < 60000; ++i) {
         double x = i & 1 ? gprojt_of_bits(gprojt_random(&state)) : (gprojt_uniform(&state) - 0.5) * 2000;
         int digits = 1 + gprojt_below(&state, 17);

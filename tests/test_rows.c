@@ -360,11 +360,10 @@ GPROJT_TEST(rows_after_weights_of_elements) {
 /* Each wrong call says what is wrong. */
 GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
-    static const char *const words[] = {"neither", "neither",    "neither",    "none of",     "none of",
-                                        "3 each",  "1 or more",  "1 or more",  "beyond 1e70", "1e50",
-                                        "finite",  "gproj_kind", "gproj_kind", "no vertex",   "neither",
-                                        "-1 terms", "or no list", "none of",   "no vertex -2", "gproj_kind",
-                                        "1 or more", "1 or more", "gproj_kind", "gproj_kind"};
+    static const char *const words[] = {
+        "neither",     "neither", "neither",      "none of",    "none of",    "3 each",    "1 or more",  "1 or more",
+        "beyond 1e70", "1e50",    "finite",       "gproj_kind", "gproj_kind", "no vertex", "neither",    "-1 terms",
+        "or no list",  "none of", "no vertex -2", "gproj_kind", "1 or more",  "1 or more", "gproj_kind", "gproj_kind"};
     int32_t i;
     for (i = 0; i < 24; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
@@ -378,22 +377,22 @@ GPROJT_TEST(wrong_rows_are_refused) {
         if (i == 1) term.i = 3 * mesh->vertex_count; /* a normal: the library's */
         if (i == 2) term.j = INT32_MAX;
         if (i == 14) term.j = -2;
-        got = i < 3    ? gproj_form_add_row(form, group, 1, &term, 0, 0)
-              : i == 3 ? gproj_form_add_row(form, planar, 1, &term, 0, 0)
-              : i == 4 ? gproj_form_add_unknowns(form, 77, GPROJ_UNIT_NUMBER, 1, values, NULL, NULL)
-              : i == 5 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 2, values, NULL, NULL)
-              : i == 6 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 0, values, NULL, NULL)
-              : i == 7 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
-              : i == 8 ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
+        got = i < 3     ? gproj_form_add_row(form, group, 1, &term, 0, 0)
+              : i == 3  ? gproj_form_add_row(form, planar, 1, &term, 0, 0)
+              : i == 4  ? gproj_form_add_unknowns(form, 77, GPROJ_UNIT_NUMBER, 1, values, NULL, NULL)
+              : i == 5  ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_POINT, 2, values, NULL, NULL)
+              : i == 6  ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 0, values, NULL, NULL)
+              : i == 7  ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 1, NULL, NULL, NULL)
+              : i == 8  ? gproj_form_add_unknowns(form, group, GPROJ_UNIT_NUMBER, 4, values, NULL, NULL)
               : i == 17 ? gproj_form_add_row(form, -1, 1, &term, 0, 0)
               : i == 18 ? gproj_form_add_row(form, group, 1, &term, 0, -2)
               : i == 20 ? gproj_form_add_unknowns(form, group, (gproj_unit)-1, 1, values, NULL, NULL)
               : i == 21 ? gproj_form_add_unknowns(form, group, (gproj_unit)9, 1, values, NULL, NULL)
               : i == 9 || i == 11 || i == 12 || i == 19 || i >= 22 ? group
-              : i == 15                      ? gproj_form_add_row(form, group, -1, &term, 0, 0)
-              : i == 16                      ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
-              : i == 13                      ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
-                                             : gproj_form_add_row(form, group, 1, &term, 0, 0);
+              : i == 15                                            ? gproj_form_add_row(form, group, -1, &term, 0, 0)
+              : i == 16                                            ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
+              : i == 13 ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
+                        : gproj_form_add_row(form, group, 1, &term, 0, 0);
         if (!strstr(gproj_form_error(form)->message, words[i]))
             printf("  %d: %s\n", i, gproj_form_error(form)->message);
         GPROJT_CHECK(got == -1 && strstr(gproj_form_error(form)->message, words[i]) != NULL);
@@ -441,7 +440,8 @@ GPROJT_TEST(groups_have_their_own_unknowns) {
     double value[2];
     for (k = 0; k < 2; ++k) {
         group[k] = gproj_add_rows(form, NULL, GPROJ_WISH, GPROJ_PLACE_NONE, 1);
-        at[k] = gproj_form_add_unknowns(form, group[k], k ? GPROJ_UNIT_NUMBER : GPROJ_UNIT_LENGTH, 2, start[k], NULL, NULL);
+        at[k] =
+            gproj_form_add_unknowns(form, group[k], k ? GPROJ_UNIT_NUMBER : GPROJ_UNIT_LENGTH, 2, start[k], NULL, NULL);
         GPROJT_CHECK(!strcmp(gproj_form_group_info(form, group[k]).name, "rows"));
     }
     for (k = 0; k < 2; ++k) { /* the sum of the first unknowns is 10, the difference 0: both are 5 */

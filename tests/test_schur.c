@@ -140,7 +140,8 @@ static double gprojt_step_error(gproj_form *form, double epsilon) {
     gprojt_dense d;
     int32_t v, f;
     GPROJT_CHECK(gproji_find_step(&form->solve.loop, epsilon));
-    for (v = 0; v < form->mesh->vertex_count; ++v) GPROJT_NEAR(s->schur.metric[s->nodes.of[3 * v]] / metric[v], 1, 1e-9);
+    for (v = 0; v < form->mesh->vertex_count; ++v)
+        GPROJT_NEAR(s->schur.metric[s->nodes.of[3 * v]] / metric[v], 1, 1e-9);
     d = gprojt_dense_step(form, epsilon, metric);
     for (v = 0; v < d.n; ++v) {
         GPROJT_CHECK(gproji_is_finite(s->vector.step[v]));

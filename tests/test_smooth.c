@@ -91,7 +91,7 @@ static void gprojt_add_planar_fixed(gproj_form *form, void *user) {
 
 /* Circular faces lose short edges, and planar ones within a fixed boundary fold, unless their corners are kept. */
 GPROJT_TEST(corners_are_kept) {
-    static void (*const build[2])(gproj_form *form, void *user) = {gprojt_add_circular, gprojt_add_planar_fixed};
+    static void (*const build[2])(gproj_form * form, void *user) = {gprojt_add_circular, gprojt_add_planar_fixed};
     int i, kept;
     for (i = 0; i < 2; ++i)
         for (kept = 0; kept < 2; ++kept) {
@@ -161,7 +161,8 @@ GPROJT_TEST(triangles_are_not_bent) {
 /* A step is refused that takes three quarters of a corner's area and leaves less than a quarter of what it was when the
    solve began: a corner of a square goes along the diagonal, by the part s, which leaves the part 1 - 2 s. */
 GPROJT_TEST(steps_that_take_corners_are_refused) {
-    static const double way[7][2] = {{0, 0.36}, {0, 0.39}, {0, 0.6}, {0.36, 0.45}, {0.36, 0.47}, {0.42, 0.45}, {0.42, 0.49}};
+    static const double way[7][2] = {{0, 0.36},    {0, 0.39},    {0, 0.6},    {0.36, 0.45},
+                                     {0.36, 0.47}, {0.42, 0.45}, {0.42, 0.49}};
     static const bool refused[7] = {false, true, true, false, true, false, true};
     gproj_solve_options options = gprojt_smooth();
     int32_t i, k, end;
@@ -221,8 +222,7 @@ GPROJT_TEST(steps_that_take_edges_are_refused) {
         for (i = 0; i < 10; ++i) {
             double part = way[i / 2][i % 2];
             int32_t c;
-            for (c = 0; c < 12; ++c)
-                values[i % 2][c] = square[c] * (c % 3 == k ? part : c % 3 == 1 - k ? 1 / part : 1);
+            for (c = 0; c < 12; ++c) values[i % 2][c] = square[c] * (c % 3 == k ? part : c % 3 == 1 - k ? 1 / part : 1);
             if (i % 2) GPROJT_CHECK(gprojt_inside_refuses(form, values[0], values[1]) == refused[i / 2]);
         }
     gproj_form_destroy(form);
@@ -304,8 +304,8 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
    nearly all of 36 stay whole, because edges and bends are kept as well as corners (20 without bends), and give way in two
    stages (24 in one), some of them in a later attempt. */
 GPROJT_TEST(patches_stay_whole) {
-    static void (*const build[3])(gproj_form *form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
-                                                                   gprojt_add_planar_gliding};
+    static void (*const build[3])(gproj_form * form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_fixed,
+                                                                    gprojt_add_planar_gliding};
     static const int32_t sizes[3] = {5, 6, 5};
     int i, k, whole = 0, helped = 0;
     for (k = 0; k < 3; ++k)
@@ -491,8 +491,7 @@ static void gprojt_meddle(void *user, gproj_system *system, int32_t group, const
     gprojt_meddler *meddler = (gprojt_meddler *)user;
     static const gproj_term x = {0, -1, 1};
     (void)progress;
-    if (++meddler->calls == meddler->add_at)
-        meddler->added = gproj_system_add_row(system, group, 1, &x, 0, 0) >= 0;
+    if (++meddler->calls == meddler->add_at) meddler->added = gproj_system_add_row(system, group, 1, &x, 0, 0) >= 0;
 }
 
 /* The last refresh is that with which the mesh returns to an earlier attempt, the best one: nothing may be added then,
@@ -653,9 +652,9 @@ GPROJT_TEST(forged_corners_are_refused) {
     for (k = 0; k < count; ++k) /* an edge without a row */
         if (gprojt_read_integer(state + at + 4 + 4 * (size_t)k) == edges + plain) ++plain, k = -1;
     for (way = 0; way < 9; ++way) {
-        static const char *const says[9] = {"not one of a face", "not one of a face", "not one of a face", "not one of a face",
-                                            "not one of a face", "not one of a face", "out of its range",  "out of its range",
-                                            "has no row"};
+        static const char *const says[9] = {"not one of a face", "not one of a face", "not one of a face",
+                                            "not one of a face", "not one of a face", "not one of a face",
+                                            "out of its range",  "out of its range",  "has no row"};
         int32_t item = way == 0   ? 2 * open
                        : way == 1 ? 2 * open + 1
                        : way == 2 ? bends + open

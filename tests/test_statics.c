@@ -882,12 +882,15 @@ GPROJT_TEST(bounds_of_ones_own_on_forces) {
         group.name = "own", group.kind = GPROJ_BOUND, group.place = GPROJ_PLACE_EDGE, group.schedule = gproj_keep(1);
         term[0] = gprojt_term(gproj_force_variable(form, least), -1, way == 8 ? 7 : 1);
         term[1] = gprojt_term(gproj_force_variable(form, least), -1, 1);
-        if (way == 1) term[0].j = term[0].i;                        /* w^2 >= 0 */
-        if (way == 2) term[0].i = 0;                                /* x >= 0 */
-        if (way == 3) term[1].i = 0;                                /* w + x >= 0 */
+        if (way == 1) term[0].j = term[0].i;                         /* w^2 >= 0 */
+        if (way == 2) term[0].i = 0;                                 /* x >= 0 */
+        if (way == 3) term[1].i = 0;                                 /* w + x >= 0 */
         if (way == 4) term[0].i = gproj_force_variable(form, other); /* of another edge */
         gproj_system_add_row(s, gproj_system_add_group(s, &group), way == 3 ? 2 : 1, term, constant,
-                             way == 6 ? -1 : way == 7 ? pinned : way == 0 ? mesh->edge_count : least);
+                             way == 6   ? -1
+                             : way == 7 ? pinned
+                             : way == 0 ? mesh->edge_count
+                                        : least);
         GPROJT_CHECK(gproj_find_forces(form, w, NULL, NULL) == GPROJ_OK);
         if (way == 8) GPROJT_CHECK(w[least] > -1e-9);
         if (way < 8) GPROJT_CHECK(!memcmp(w, kept, (size_t)mesh->edge_count * sizeof *w));
@@ -1420,8 +1423,7 @@ static gproj_result gprojt_verdict(double rise, bool planar, int sign, bool all,
 
 GPROJT_TEST(obstacles_are_named) {
     gproj_result result = gprojt_verdict(2, true, 1, true, true);
-    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED &&
-                 strstr(result.message, "cannot become flat, because "));
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "cannot become flat, because "));
     result = gprojt_verdict(2, false, 1, true, true);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED || strstr(result.message, "all vertices are fixed"));
     result = gprojt_verdict(2, false, 0, false, true);

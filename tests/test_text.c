@@ -293,7 +293,8 @@ GPROJT_TEST(writer_failures) {
     long stop;
     memset(&text, 0, sizeof text);
     for (stop = 0; stop < 1000; ++stop) gprojt_text_write(&text, "v 0 0 0\nl -1 1\n", 15);
-    lines = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_OBJ, NULL, NULL); /* 8890 bytes of vertices, as many of lines */
+    lines = gproj_mesh_read(text.text, text.size, GPROJ_FORMAT_OBJ, NULL,
+                            NULL); /* 8890 bytes of vertices, as many of lines */
     GPROJT_REQUIRE(lines && lines->polyline_count == 1000);
     for (stop = 1; stop < 5; ++stop) {
         text.calls = 0, text.stop_at = stop;
@@ -372,11 +373,15 @@ GPROJT_TEST(files) {
     GPROJT_CHECK(gproj_mesh_save(mesh, NULL, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "path to save"));
     GPROJT_CHECK(!gproj_mesh_load(".", NULL, &error) && error.code == GPROJ_ERROR_FILE); /* a folder */
     GPROJT_CHECK(!gproj_mesh_load("a\nb.obj", NULL, &error) && strstr(error.message, "a?b.obj"));
-    GPROJT_CHECK(!gproj_mesh_load("a\x7f" "b.obj", NULL, &error) && strstr(error.message, "'a?b.obj'"));
+    GPROJT_CHECK(!gproj_mesh_load("a\x7f"
+                                  "b.obj",
+                                  NULL, &error) &&
+                 strstr(error.message, "'a?b.obj'"));
     for (i = 0; i < 200; ++i) memcpy(path + 2 * i, "\xc3\xa4", 2);
     for (i = 0; i < 2; ++i) {
         memcpy(path + 400, i ? ".obj" : "x.obj", i ? 5 : 6);
-        GPROJT_CHECK(!gproj_mesh_load(path, NULL, &error) && strstr(error.message, "'...\xc3\xa4\xc3\xa4") == error.message);
+        GPROJT_CHECK(!gproj_mesh_load(path, NULL, &error) &&
+                     strstr(error.message, "'...\xc3\xa4\xc3\xa4") == error.message);
     }
     memset(path, 'x', sizeof path);
     memcpy(path + sizeof path - 8, "\xc3\xa4.obj", 7);
