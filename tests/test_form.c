@@ -2900,6 +2900,7 @@ GPROJT_TEST(at_the_largest_coordinates) {
     gprojt_add_vertex(&soup, 1e70, 1e70, 0), gprojt_add_vertex(&soup, low, 1e70, 0);
     gprojt_add_quad(&soup, 0, 1, 2, 3);
     mesh = gprojt_mesh_of(soup);
+    GPROJT_REQUIRE(mesh);
     before = gprojt_keep(mesh);
     form = gproj_form_create(mesh, NULL);
     gproj_add_planarity(form, 1);
