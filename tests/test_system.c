@@ -953,7 +953,7 @@ GPROJT_TEST(steps_with_wide_rows_only) {
 }
 
 GPROJT_TEST(empty_systems) {
-    static const double x[2] = {3, 4};
+    static const double x[2] = {3, 4}, large = 1e200;
     gproj_system *s = gproj_system_create(NULL);
     gproj_result result = gproj_system_solve(s, 5, NULL); /* no variables, no rows */
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.worst_group == -1 && result.iterations == 0);
@@ -963,9 +963,9 @@ GPROJT_TEST(empty_systems) {
     result = gproj_system_solve(s, 5, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_STALLED || result.outcome == GPROJ_ITERATION_LIMIT);
     GPROJT_CHECK(result.residual == 2 && result.worst_group == 0 && result.worst_element == 7);
-    gproj_system_set_row(s, 0, 0, NULL, 1e200); /* whose square is no number, so that there is no step either */
+    gproj_system_set_row(s, 0, 0, NULL, large); /* whose square is no number, so that there is no step either */
     result = gproj_system_solve(s, 5, NULL);
-    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.residual == 1e200 && result.iterations == 0);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.residual == large && result.iterations == 0);
     gproj_system_destroy(s);
     s = gproj_system_create(NULL); /* variables in no row stay where they are */
     gproj_system_add_variables(s, 2, 1, x);
