@@ -690,8 +690,16 @@ GPROJT_TEST(each_byte_forged) {
 
 /* A nearest solve's state needs an analysis in a form that has made none; one that is wrong at any place before is refused
    without. */
+/* A number's bytes in states. */
+static void gprojt_bytes_of(double number, uint8_t bytes[8]) {
+    uint64_t bits;
+    int k;
+    memcpy(&bits, &number, 8);
+    for (k = 0; k < 8; ++k) bytes[k] = (uint8_t)(bits >> (8 * k));
+}
+
 GPROJT_TEST(wrong_states_are_not_analysed) {
-    static const double wrong = -1;
+    uint8_t right[8], wrong[8];
     gproj_mesh *mesh = gprojt_roof(3, 0.05);
     gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
     gproj_solve_options options;
@@ -709,13 +717,14 @@ GPROJT_TEST(wrong_states_are_not_analysed) {
         gproj_code code;
         gprojt_put_back(mesh, start);
         form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
-        for (i = 24; k < 2 && memcmp(state + i, &mark[k], 8) != 0; ++i) continue;
-        if (k < 2) memcpy(state + i, &wrong, 8);
+        gprojt_bytes_of(-1, wrong), gprojt_bytes_of(mark[k % 2], right);
+        for (i = 24; k < 2 && memcmp(state + i, right, 8) != 0; ++i) GPROJT_REQUIRE(i + 8 < size);
+        if (k < 2) memcpy(state + i, wrong, 8);
         gprojt_seal(state, size);
         code = gproj_state_restore(form, state, size, NULL);
         GPROJT_CHECK(code == (k == 2 ? GPROJ_OK : GPROJ_ERROR_SYNTAX));
         GPROJT_CHECK((gprojt_inside_factor(gproj_form_system(form)).columns > 0) == (k == 2));
-        if (k < 2) memcpy(state + i, &mark[k], 8);
+        if (k < 2) memcpy(state + i, right, 8);
         gproj_form_destroy(form);
     }
     free(state), free(start);
