@@ -688,8 +688,6 @@ GPROJT_TEST(each_byte_forged) {
     }
 }
 
-/* A nearest solve's state needs an analysis in a form that has made none; one that is wrong at any place before is refused
-   without. */
 /* A number's bytes in states. */
 static void gprojt_bytes_of(double number, uint8_t bytes[8]) {
     uint64_t bits;
@@ -698,6 +696,8 @@ static void gprojt_bytes_of(double number, uint8_t bytes[8]) {
     for (k = 0; k < 8; ++k) bytes[k] = (uint8_t)(bits >> (8 * k));
 }
 
+/* A nearest solve's state needs an analysis in a form that has made none; one that is wrong at any place before is refused
+   without. */
 GPROJT_TEST(wrong_states_are_not_analysed) {
     uint8_t right[8], wrong[8];
     gproj_mesh *mesh = gprojt_roof(3, 0.05);
