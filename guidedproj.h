@@ -2251,8 +2251,9 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     /* 2. Is it in [1, 10) already (for the shortest text: once rounded up)? */
     side = limit ? gproji_big_compare(&r, &s) : gproji_big_compare_sum(&r, &m, up, &s);
     *point = k + 1;
-    if (side <
-        0) { /* rounded up to 10^k is only one double, whose fraction is even: below 10^23 = 5^23 2^23, 54 bits */
+    /* Not where side = 0 and the digits round up to 10^k: only 10^23 = 5^23 2^23 is a midpoint, and the double below it
+       has an even fraction. */
+    if (side < 0) {
         *point = k;
         gproji_big_multiply(&r, 10, 0);
         gproji_big_multiply(&m, 10, 0);
@@ -2613,8 +2614,8 @@ GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *for
         case 'l': length = gproji_append_integer(text, size, length, va_arg(list, int64_t)); break;
         case 'g': {
             char number[GPROJ_NUMBER_SIZE];
-            length =
-                gproji_append(text, size, length, number, gproji_number_write_digits(va_arg(list, double), 3, number));
+            size_t digits = gproji_number_write_digits(va_arg(list, double), 3, number);
+            length = gproji_append(text, size, length, number, digits);
             break;
         }
         }
@@ -11528,16 +11529,16 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
    - x + t dx is led back to phi = 0 by steps orthogonal to that set, with the same factor;
    - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian and turns no face over.
    The first iteration is a guided projection and the last ones are plain projections, so that everything holds however
-   far the slides came; safeguards yield if they are in the way there. A small s keeps x close to the
-   set, a large one lets a step go farther. */
+   far the slides came; safeguards yield there where they are in the way. A small s keeps x close to the set, a large
+   one lets a step go farther. */
 
-static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
-static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
-static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
-static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
-static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
-static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
-static const double gproji_nearest_left = 0.5;      /* of the residual, in a last projection that need not yield */
+static const double gproji_nearest_scale = 0.03;   /* s, for the wish with the largest weight */
+static const double gproji_nearest_epsilon = 3e-5; /* the smallest eps: as in other steps it follows the residual */
+static const double gproji_nearest_optimal = 1e-6; /* enough for convergence */
+static const double gproji_nearest_curved = 0.3;   /* below this optimality the matrix has its curvature */
+static const double gproji_nearest_shift = 0.1;    /* the first shift, times s^2 */
+static const double gproji_nearest_flat = 0.01;    /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_left = 0.5; /* of the residual; last steps that leave more make safeguards yield */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
@@ -11846,10 +11847,10 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
-        /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
         if (n > last + 1 && loop->standing.residual > gproji_nearest_left * loop->watch.fallen)
             gproji_let_safeguards_yield(loop);
         loop->watch.fallen = loop->standing.residual;
+        /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
         moved = n > guided && n <= last && gproji_slide(loop);
         if (!moved && (n <= guided || !gproji_holds(loop))) {
             gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
@@ -22329,7 +22330,7 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     return found;
 }
 
-/* The corners, of which a form has some here, if they act in this solve; NULL: they do not. */
+/* The part of a form that has one, if corners act in this solve; NULL: they do not. */
 GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     return gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
@@ -23937,11 +23938,10 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     how.epsilon = gproji_drag_epsilon, how.light = gproji_drag_light, how.light_from = light_from;
     how.rounds = GPROJI_DRAG_ROUNDS, how.sides = GPROJI_DRAG_SIDES;
     drag->info.solves += GPROJI_DRAG_ROUNDS * drag->columns;
-    if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL)) {
+    if (!gproji_project(system, &how, drag->columns, drag->motion, restore ? drag->base : NULL))
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                            "drag: what must hold cannot be linearised here: its numbers are too large or too "
                            "different");
-    }
     /* 2. The step from x to `base` is damped until it halves the residual and moves no vertex by more than a mean edge:
        where rows nearly depend on each other the least step that satisfies them may be hundreds of edges long. The last
        one need not halve it; after that there is none. */

@@ -91,6 +91,32 @@ GPROJT_TEST(told_for_the_nearest) {
     gprojt_check_kinds(&options);
 }
 
+/* Safeguards that come in when a nearest mesh is spoiled are not told: the peak is up to 1.7 times as large. */
+GPROJT_TEST(told_for_nearest_meshes_without_safeguards) {
+    int32_t n;
+    for (n = 8; n <= 20; n += 12) {
+        gprojt_failing counted;
+        gproj_mesh *mesh = gprojt_noisy(0, n, 0.06, 5);
+        gproj_solve_options options;
+        gproj_host host;
+        gproj_form *form;
+        double told;
+        memset(&counted, 0, sizeof counted);
+        memset(&options, 0, sizeof options);
+        options.nearest = true;
+        host = gprojt_failing_host(&counted);
+        form = gproj_form_create(mesh, &host);
+        gproj_add_planarity(form, 1);
+        GPROJT_REQUIRE(gproj_solve_begin(form, 60, &options, NULL));
+        told = (double)gproj_solve_memory(form, NULL);
+        counted.peak = counted.bytes;
+        GPROJT_CHECK(gproj_solve_advance(form, INFINITY).spoiled.total == 0);
+        GPROJT_CHECK((double)counted.peak > told && (double)counted.peak < 1.7 * told);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 GPROJT_TEST(told_for_smooth_steps) {
     gproj_solve_options options;
     memset(&options, 0, sizeof options);
@@ -166,6 +192,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(told_before_it_is_taken);
     GPROJT_RUN(told_for_the_nearest);
+    GPROJT_RUN(told_for_nearest_meshes_without_safeguards);
     GPROJT_RUN(told_for_smooth_steps);
     GPROJT_RUN(told_in_proportion);
     GPROJT_RUN(refusals);

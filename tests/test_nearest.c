@@ -278,22 +278,30 @@ static void gprojt_ask_volume(gproj_form *form) {
     gproj_add_volume(form, gprojt_wanted_volume, 1);
 }
 
-/* Solves a copy of the mesh in the usual way or for the nearest one; `positions`: the outcome. */
-static gproj_measures gprojt_measure_solve(const gproj_mesh *mesh, gprojt_asks ask, bool nearest, int32_t iterations,
-                                           const gproj_host *host, gproj_result *result, double *positions) {
+/* Solves a copy of the mesh; `positions`: the outcome. */
+static gproj_measures gprojt_measure_options(const gproj_mesh *mesh, gprojt_asks ask,
+                                             const gproj_solve_options *options, int32_t iterations,
+                                             const gproj_host *host, gproj_result *result, double *positions) {
     gproj_error error;
     gproj_mesh *copy = gproj_mesh_copy(mesh, NULL, &error);
     gproj_form *form = gproj_form_create(copy, host);
-    gproj_solve_options options = gprojt_nearest();
     gproj_measures measures;
-    options.nearest = nearest;
     ask(form);
-    *result = gproj_solve(form, iterations, &options);
+    *result = gproj_solve(form, iterations, options);
+    GPROJT_CHECK(gproj_measure_spoiled(copy, mesh->position).total == result->spoiled.total);
     measures = gproj_measure(copy, mesh->position, NULL);
     if (positions) memcpy(positions, copy->position, 3 * (size_t)copy->vertex_count * sizeof *positions);
     gproj_form_destroy(form);
     gproj_mesh_destroy(copy);
     return measures;
+}
+
+/* The same in the usual way or for the nearest one. */
+static gproj_measures gprojt_measure_solve(const gproj_mesh *mesh, gprojt_asks ask, bool nearest, int32_t iterations,
+                                           const gproj_host *host, gproj_result *result, double *positions) {
+    gproj_solve_options options = gprojt_nearest();
+    options.nearest = nearest;
+    return gprojt_measure_options(mesh, ask, &options, iterations, host, result, positions);
 }
 
 GPROJT_TEST(moves_less_than_projection) {
@@ -323,17 +331,10 @@ GPROJT_TEST(moves_less_than_projection) {
 
 /* Solves a copy of the mesh for the nearest flat one, with this limit. */
 static gproj_result gprojt_flatten(const gproj_mesh *mesh, int32_t iterations, bool skip_guard) {
-    gproj_error error;
-    gproj_mesh *copy = gproj_mesh_copy(mesh, NULL, &error);
-    gproj_form *form = gproj_form_create(copy, NULL);
     gproj_solve_options options = gprojt_nearest();
     gproj_result result;
     options.skip_guard = skip_guard;
-    gproj_add_planarity(form, 1);
-    result = gproj_solve(form, iterations, &options);
-    GPROJT_CHECK(gproj_measure_spoiled(copy, mesh->position).total == result.spoiled.total);
-    gproj_form_destroy(form);
-    gproj_mesh_destroy(copy);
+    gprojt_measure_options(mesh, gprojt_ask_planar, &options, iterations, NULL, &result, NULL);
     return result;
 }
 

@@ -450,18 +450,24 @@ static double gprojt_plain_step_error(gproj_system *s, double epsilon) {
     return worst;
 }
 
+/* 24 nodes of all sizes; group 0 for rows with local unknowns, group 1 for rows of faces, both without rows. */
+static gproj_system *gprojt_nodes_and_groups(int32_t first[25], uint64_t *seed) {
+    gproj_system *s = gproj_system_create(NULL);
+    gproj_group group;
+    memset(&group, 0, sizeof group);
+    group.name = "on faces", group.place = GPROJ_PLACE_FACE, group.schedule = gproj_keep(1);
+    gprojt_add_nodes(s, 24, first, seed);
+    gprojt_add_group(s, "local", GPROJ_CONSTRAINT, 1);
+    gproj_system_add_group(s, &group);
+    return s;
+}
+
 /* Local unknowns between nodes of all sizes, rows without any that belong to one face, and rows at one node. */
 GPROJT_TEST(elements_of_all_kinds) {
     uint64_t seed = 71;
     int32_t round, k, j, first[25];
     for (round = 0; round < 30; ++round) {
-        gproj_system *s = gproj_system_create(NULL);
-        gproj_group group;
-        memset(&group, 0, sizeof group);
-        group.name = "on faces", group.place = GPROJ_PLACE_FACE, group.schedule = gproj_keep(1);
-        gprojt_add_nodes(s, 24, first, &seed);
-        gprojt_add_group(s, "local", GPROJ_CONSTRAINT, 1);
-        gproj_system_add_group(s, &group);
+        gproj_system *s = gprojt_nodes_and_groups(first, &seed);
         gprojt_add_group(s, "own", GPROJ_CONSTRAINT, 1);
         for (k = 0; k < 10; ++k) gprojt_add_local(s, 0, first, 24, k == 9 ? 4 : 4 + gprojt_below(&seed, 3), &seed);
         for (k = 0; k < 4; ++k)
@@ -479,13 +485,7 @@ GPROJT_TEST(not_taken_where_they_do_not_pay) {
     uint64_t seed = 72;
     int32_t few, k, first[25];
     for (few = 0; few < 2; ++few) {
-        gproj_system *s = gproj_system_create(NULL);
-        gproj_group group;
-        memset(&group, 0, sizeof group);
-        group.name = "on faces", group.place = GPROJ_PLACE_FACE, group.schedule = gproj_keep(1);
-        gprojt_add_nodes(s, 24, first, &seed);
-        gprojt_add_group(s, "local", GPROJ_CONSTRAINT, 1);
-        gproj_system_add_group(s, &group);
+        gproj_system *s = gprojt_nodes_and_groups(first, &seed);
         for (k = 0; k < 8; ++k) gprojt_add_local(s, 0, first, 24, few && k == 5 ? 3 : 4, &seed);
         for (k = 0; !few && k < 100; ++k) gprojt_add_joining(s, 1, first, 24, -1, k, &seed);
         GPROJT_CHECK(gproj_system_solve(s, 40, NULL).outcome == (few ? GPROJ_CONVERGED : GPROJ_STALLED));
