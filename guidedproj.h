@@ -11532,13 +11532,13 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
    far the slides came; safeguards yield there where they are in the way. A small s keeps x close to the set, a large
    one lets a step go farther. */
 
-static const double gproji_nearest_scale = 0.03;   /* s, for the wish with the largest weight */
-static const double gproji_nearest_epsilon = 3e-5; /* the smallest eps: as in other steps it follows the residual */
-static const double gproji_nearest_optimal = 1e-6; /* enough for convergence */
-static const double gproji_nearest_curved = 0.3;   /* below this optimality the matrix has its curvature */
-static const double gproji_nearest_shift = 0.1;    /* the first shift, times s^2 */
-static const double gproji_nearest_flat = 0.01;    /* a minimum's matrix is positive definite with this shift */
-static const double gproji_nearest_left = 0.5; /* of the residual; last steps that leave more make safeguards yield */
+static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
+static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
+static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
+static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
+static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
+static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_left = 0.5;      /* of the residual: if a last step leaves more, safeguards yield */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
