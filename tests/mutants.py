@@ -8,6 +8,7 @@ runs these cases until one fails: short ones first, and those of the programs wh
 (">>fill") before others that are a tenth as long. A mutant that no case notices has survived: a test is missing, or the
 change makes no difference (then mutants.txt says why). One that takes much longer than the header without it is killed.
 
+A mutant is chosen by the seed and its own text, so that most of those of a seed are the same when the header has changed.
 Everything is in build/mutants: the copy of the project (tree), the list (mutants.json), one line a finished mutant
 (results.jsonl). A run that is stopped goes on where it was, as long as header, seed, number and sections are the same;
 --again tries survivors once more (after tests were added), --only 3,17 tries these, --jobs at a time (2). --sanitized tries
@@ -408,9 +409,23 @@ def compiled_lines():
     return lines
 
 
+def number_alike(mutants):
+    """Tells apart those that make the same change in one function, so that a mutant has a name wherever its line moves."""
+    seen = {}
+    for m in sorted(mutants, key=lambda m: m["first"]):
+        name = (m["function"], m["kind"], m["old"], m["new"])
+        m["alike"] = seen[name] = seen.get(name, -1) + 1
+
+
+def chance(seed, *names):
+    """A number that seed and names decide, and nothing else in the header."""
+    return hashlib.sha256(repr((seed, names)).encode()).hexdigest()
+
+
 def choose(mutants, number, seed, sections):
-    """A number for each section by its size, within it every class of changes in turn; one mutant a line, none in another."""
-    rng = random.Random(seed)
+    """A number for each section by its size, within it every class of changes in turn; one mutant a line, none in another.
+    A change of the header leaves most of those chosen elsewhere as they are."""
+    number_alike(mutants)
     by_section = {}
     for m in mutants:
         if not sections or m["section"] in sections: by_section.setdefault(m["section"], []).append(m)
@@ -420,9 +435,8 @@ def choose(mutants, number, seed, sections):
         quota = max(min(4, number), round(number * len(ms) / max(total, 1)))
         classes = {}
         for m in ms: classes.setdefault(m["kind"], []).append(m)
-        lists = [classes[kind] for kind in sorted(classes)]
-        for group in lists: rng.shuffle(group)
-        rng.shuffle(lists)
+        lists = [classes[kind] for kind in sorted(classes, key=lambda kind: chance(seed, section, kind))]
+        for group in lists: group.sort(key=lambda m: chance(seed, m["function"], m["kind"], m["old"], m["new"], m["alike"]))
         lines, taken = set(), []
         while lists and len(taken) < quota:
             group = lists.pop(0)
