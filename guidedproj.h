@@ -21763,7 +21763,6 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
             p->opposite = true;
             lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
             s->lost[1] = lost;
-            p->opposite = false;
         }
         if (uniform) {
             gproji_force_limits(form, p->lower, p->upper);

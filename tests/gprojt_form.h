@@ -145,6 +145,11 @@ static inline bool gprojt_all_finite(const double *x, int32_t count) {
     return true;
 }
 
+/* What a builder returns: the group, but -1 if the form has an error. */
+static inline void gprojt_added(const gproj_form *form, int32_t group) {
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK ? group >= 0 : group == -1);
+}
+
 /* -- failing allocations of forms: gprojt_fail_every_allocation with this, and a gprojt_solve as user -- */
 
 typedef struct gprojt_solve {

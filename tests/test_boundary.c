@@ -323,13 +323,13 @@ static void gprojt_add_all(gproj_form *form, void *user) {
     static const int32_t vertices[] = {0, 5, 10, 15}, edges[] = {1};
     static const double up[3] = {0, 0, 1};
     (void)user;
-    gproj_add_coplanar(form, 4, vertices, 1);
-    gproj_add_collinear(form, 4, vertices, 1);
-    gproj_add_planar_boundary(form, 1);
-    gproj_add_straight_boundary(form, 1);
-    gproj_add_orthogonal_edges(form, up, 1, edges, 1);
-    gproj_add_orthogonal_boundary(form, 1);
-    gproj_add_lifting(form, 1);
+    gprojt_added(form, gproj_add_coplanar(form, 4, vertices, 1));
+    gprojt_added(form, gproj_add_collinear(form, 4, vertices, 1));
+    gprojt_added(form, gproj_add_planar_boundary(form, 1));
+    gprojt_added(form, gproj_add_straight_boundary(form, 1));
+    gprojt_added(form, gproj_add_orthogonal_edges(form, up, 1, edges, 1));
+    gprojt_added(form, gproj_add_orthogonal_boundary(form, 1));
+    gprojt_added(form, gproj_add_lifting(form, 1));
 }
 
 static void gprojt_add_planes(gproj_form *form, void *user) {

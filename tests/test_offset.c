@@ -834,8 +834,8 @@ static bool gprojt_use_offsets(const gproj_host *host, void *user) {
 
 static void gprojt_add_conicality(gproj_form *form, void *user) {
     (void)user;
-    gproj_add_planarity(form, 1);
-    gproj_add_conicality(form, 1);
+    gprojt_added(form, gproj_add_planarity(form, 1));
+    gprojt_added(form, gproj_add_conicality(form, 1));
 }
 
 GPROJT_TEST(every_allocation_fails_once) {

@@ -378,13 +378,13 @@ GPROJT_TEST(refusals) {
 }
 
 static void gprojt_add_all(gproj_form *form, void *user) {
-    gproj_add_planarity(form, 1);
-    gproj_add_circularity(form, 1);
-    gproj_add_volume(form, 1.1 * gproj_volume((const gproj_mesh *)user), 1);
-    gproj_add_equal_areas(form, 0.1);
-    gproj_add_parallelograms(form, 0.1);
-    gproj_add_lengths(form, 2, NULL, NULL, 1);
-    gproj_add_equal_lengths(form, 3, NULL, 1);
+    gprojt_added(form, gproj_add_planarity(form, 1));
+    gprojt_added(form, gproj_add_circularity(form, 1));
+    gprojt_added(form, gproj_add_volume(form, 1.1 * gproj_volume((const gproj_mesh *)user), 1));
+    gprojt_added(form, gproj_add_equal_areas(form, 0.1));
+    gprojt_added(form, gproj_add_parallelograms(form, 0.1));
+    gprojt_added(form, gproj_add_lengths(form, 2, NULL, NULL, 1));
+    gprojt_added(form, gproj_add_equal_lengths(form, 3, NULL, 1));
 }
 
 /* What holds may be spoiled all the same: the verdict says so. */

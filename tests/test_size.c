@@ -490,11 +490,11 @@ GPROJT_TEST(same_bytes_on_any_number_of_threads) {
 static void gprojt_add_all(gproj_form *form, void *user) {
     static const double weights[3] = {1, 0, 2};
     const gproj_mesh *mesh = (const gproj_mesh *)user;
-    gproj_add_planarity(form, 1);
+    gprojt_added(form, gproj_add_planarity(form, 1));
     gproj_set_element_weights(form, gproj_add_length_bounds(form, 6, NULL, 0.9, 1.1, 1), 3, NULL, weights);
-    gproj_add_area_bounds(form, 3, NULL, 0.9, 1.1, 1);
-    gproj_add_total_area(form, 1.1 * gprojt_cost(mesh, 0, 1), 1);
-    gproj_add_cost_bounds(form, 1, 1, 0, gprojt_cost(mesh, 1, 1), 1);
+    gprojt_added(form, gproj_add_area_bounds(form, 3, NULL, 0.9, 1.1, 1));
+    gprojt_added(form, gproj_add_total_area(form, 1.1 * gprojt_cost(mesh, 0, 1), 1));
+    gprojt_added(form, gproj_add_cost_bounds(form, 1, 1, 0, gprojt_cost(mesh, 1, 1), 1));
 }
 
 GPROJT_TEST(every_allocation_fails_once) {

@@ -1132,6 +1132,21 @@ GPROJT_TEST(parts_without_support_are_named) {
     GPROJT_CHECK(strstr(gproj_solve(form, 10, NULL).message, "the part of the mesh with vertex 8 has no support"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+    /* The vertex from which the first half-edge goes belongs to its part, too, here without a boundary. */
+    mesh = gprojt_mesh_of(gprojt_cube_sphere(1));
+    pin = mesh->origin[0];
+    GPROJT_CHECK(mesh->vertex_halfedge[pin] == 0);
+    memset(load, 0, sizeof load);
+    load[3 * pin + 2] = -1;
+    for (supports.count = 0; supports.count < 2; ++supports.count) {
+        gproj_result result;
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        result = gproj_solve(form, 10, NULL);
+        GPROJT_CHECK((strstr(result.message, "has no support") != NULL) == (supports.count == 0));
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
 }
 
 /* Forces that were set, no others, measured term by term; the octahedron's first vertex is a support that has the first
@@ -1518,6 +1533,53 @@ GPROJT_TEST(overturned_shapes_are_told) {
                 GPROJT_CHECK(other > 0.9 && one < 0.5 * other);
             }
         }
+}
+
+/* The verdict on a shape that is turned over tells how much of the loads tension and compression would have left, as
+   gproj_find_forces does: here a hill that carries by one of them, but for its middle, which is pushed in. */
+GPROJT_TEST(loads_that_either_sign_leaves_are_told) {
+    int up, sign;
+    for (up = -1; up <= 1; up += 2) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 6, 12, 3.0 * up);
+        double told[2] = {0, 0}, *left = gprojt_numbers(mesh->vertex_count);
+        double *load = gprojt_numbers(3 * mesh->vertex_count), *before;
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_result result;
+        const char *text;
+        int32_t v;
+        for (v = 0; v < mesh->vertex_count; ++v)
+            if (mesh->position[3 * v + 2] * up > 2.9) mesh->position[3 * v + 2] = 0;
+        for (v = 0; v < mesh->vertex_count; ++v) load[3 * v + 2] = -1;
+        before = gprojt_keep(mesh);
+        loads.point_load = load;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        if (up > 0) gproj_add_tension(form, mesh->edge_count, NULL, 1);
+        if (up < 0) gproj_add_compression(form, mesh->edge_count, NULL, 1);
+        result = gproj_solve(form, 60, NULL);
+        text = strstr(result.message, "would have left ");
+        GPROJT_CHECK(text && sscanf(text, "would have left %lf of its loads, %*s %lf, so", &told[0], &told[1]) == 2);
+        gproj_form_destroy(form);
+        gprojt_put_back(mesh, before);
+        for (sign = 0; sign < 2; ++sign) { /* the other one, that asked for */
+            double sum = 0;
+            int32_t free_vertices = 0;
+            form = gprojt_pinned_form(mesh, NULL, &loads);
+            if ((up > 0) == (sign == 0))
+                gproj_add_compression(form, mesh->edge_count, NULL, 1);
+            else
+                gproj_add_tension(form, mesh->edge_count, NULL, 1);
+            GPROJT_CHECK(gproj_find_forces(form, NULL, left, NULL) == GPROJ_OK);
+            for (v = 0; v < mesh->vertex_count; ++v) {
+                sum += left[v] * left[v];
+                free_vertices += !gproj_mesh_is_boundary_vertex(mesh, v);
+            }
+            GPROJT_NEAR(told[sign], sqrt(sum / free_vertices), 0.01);
+            gproj_form_destroy(form);
+        }
+        gproj_mesh_destroy(mesh);
+        free(left), free(load), free(before);
+    }
 }
 
 /* -- with planar faces -- */
@@ -2133,6 +2195,7 @@ int main(void) {
     GPROJT_RUN(contradictions_are_named);
     GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
+    GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
     GPROJT_RUN(weights_switch_groups_off_and_on);
     GPROJT_RUN(equilibrium_on_the_way);
