@@ -340,9 +340,10 @@ static inline const char *gprojt_validate_faces(const gproj_mesh *m) {
 }
 
 static inline const char *gprojt_validate_vertices(const gproj_mesh *m) {
-    int32_t *count = (int32_t *)calloc((size_t)m->vertex_count + 1, sizeof(int32_t)), v, h, isolated = 0;
+    int32_t *count = (int32_t *)calloc(2 * (size_t)m->vertex_count + 1, sizeof(int32_t)), v, h, isolated = 0;
+    int32_t *first = count + m->vertex_count;
     const char *wrong = NULL;
-    for (h = 0; h < m->halfedge_count; ++h) count[m->origin[h]]++;
+    for (h = m->halfedge_count - 1; h >= 0; --h) count[m->origin[h]]++, first[m->origin[h]] = h;
     for (v = 0; v < m->vertex_count && !wrong; ++v) {
         int32_t ring[64], valence = gproj_mesh_one_ring(m, v, ring, 64), k, start = m->vertex_halfedge[v];
         if (valence != count[v] || valence != gproj_mesh_valence(m, v)) wrong = "valence = number of edges";
@@ -359,6 +360,7 @@ static inline const char *gprojt_validate_vertices(const gproj_mesh *m) {
             if (k > 0 && (h == start || m->face[h] < 0)) wrong = "one boundary half-edge, one fan";
         }
         if (h != start) wrong = "the fan closes";
+        if (m->face[start] >= 0 && start != first[v]) wrong = "vertex_halfedge is the first that goes out";
         for (k = 0; k < (valence > 64 ? 63 : valence); ++k) { /* ring: from the first to the last along the faces */
             int32_t last = k + 1 == valence, following = ring[last ? 0 : k + 1];
             int32_t i = start, found = 0;

@@ -490,6 +490,29 @@ GPROJT_TEST(polylines_grow) {
     }
 }
 
+/* From the end of a polyline to the beginning of the next no polyline runs: an edge there is split without more room for
+   them, and an edge along one with it. */
+GPROJT_TEST(polylines_have_gaps_between_them) {
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nv 3 1 0\n"
+                               "f 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nl 1 2\nl 3 4\n";
+    gproj_mesh *mesh = gproj_mesh_read(text, sizeof text - 1, GPROJ_FORMAT_OBJ, NULL, NULL), *after;
+    gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
+    static const int32_t first[2] = {0, 1}, second[3] = {2, 10, 3};
+    uint64_t taken;
+    gproj_edit_split_edge(e, gproj_edit_edge(e, 5, 6), 0.5, NULL); /* room for as many vertices and edges once more */
+    taken = gproj_edit_memory(e).allocations;
+    GPROJT_CHECK(gproj_edit_split_edge(e, gproj_edit_edge(e, 1, 2), 0.5, NULL) == 9);
+    GPROJT_CHECK(gproj_edit_memory(e).allocations == taken);
+    GPROJT_CHECK(gproj_edit_split_edge(e, gproj_edit_edge(e, 2, 3), 0.5, NULL) == 10);
+    GPROJT_CHECK(gproj_edit_memory(e).allocations == taken + 1);
+    after = gprojt_edit_mesh(e);
+    GPROJT_REQUIRE(after && after->polyline_count == 2);
+    GPROJT_CHECK(gprojt_polyline_is(after, 0, 2, first) && gprojt_polyline_is(after, 1, 3, second));
+    gproj_mesh_destroy(after);
+    gproj_mesh_destroy(mesh);
+    gproj_edit_destroy(e);
+}
+
 GPROJT_TEST(collapses_carry_numbers_on) {
     gproj_mesh *mesh = gprojt_lined_grid(), *after;
     gproj_edit *e = gproj_edit_create(mesh, NULL, NULL);
@@ -543,8 +566,8 @@ GPROJT_TEST(split_and_collapse_is_nothing) {
     }
 }
 
-/* Each edge of each shape, alone: a split leaves the first corners of faces where they were; a collapsed edge is no more,
-   and the numbers of its ends stand for the vertex that is left. */
+/* Each edge of each shape, alone: a split leaves the first corners of faces where they were, and so does a collapse, where
+   the vertex that is left stands for both ends; a collapsed edge is no more. */
 GPROJT_TEST(each_edge_by_itself) {
     int32_t collapsed = 0;
     int shape;
@@ -564,6 +587,10 @@ GPROJT_TEST(each_edge_by_itself) {
             kept = gproj_edit_collapse_edge(e, edge, 0.5, NULL);
             if (kept >= 0) {
                 GPROJT_CHECK(gproj_edit_vertex(e, a) == kept && gproj_edit_vertex(e, b) == kept);
+                for (i = 0; i < mesh->face_count; ++i)
+                    if (e->face_halfedge[i] >= 0)
+                        GPROJT_CHECK(e->origin[e->face_halfedge[i]] ==
+                                     gproj_edit_vertex(e, mesh->origin[mesh->face_halfedge[i]]));
                 GPROJT_CHECK(gproj_edit_split_edge(e, edge, 0.5, NULL) == -1);
                 GPROJT_CHECK(gproj_edit_collapse_edge(e, edge, 0.5, NULL) == -1);
                 GPROJT_CHECK(gprojt_validate_edit(e) == NULL);
@@ -1321,6 +1348,7 @@ int main(void) {
     GPROJT_RUN(splits_and_cuts);
     GPROJT_RUN(first_corners_stay);
     GPROJT_RUN(polylines_grow);
+    GPROJT_RUN(polylines_have_gaps_between_them);
     GPROJT_RUN(collapses_carry_numbers_on);
     GPROJT_RUN(split_and_collapse_is_nothing);
     GPROJT_RUN(each_edge_by_itself);

@@ -349,6 +349,48 @@ GPROJT_TEST(refused_slides) {
     }
 }
 
+static bool gprojt_see_slopes(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    static const double h = 1e-5, along[3][2] = {{1, 0}, {0, 1}, {1, -2}};
+    double *steepest = (double *)user, at[4], slope, x[2];
+    int32_t i, k;
+    (void)iteration;
+    for (i = 0; i < 3; ++i) {
+        memcpy(s->vector.step, along[i], sizeof along[i]);
+        for (k = 0; k < 4; ++k) {
+            double t = (k < 2 ? k - 2 : k - 1) * h; /* -2h, -h, h, 2h: differences that are exact for quartics */
+            x[0] = s->x[0] + t * along[i][0], x[1] = s->x[1] + t * along[i][1];
+            at[k] = gproji_lagrangian(s, x, NULL);
+        }
+        gproji_lagrangian(s, s->x, &slope);
+        GPROJT_NEAR(slope, (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * h), 1e-9 + 1e-9 * fabs(slope));
+        *steepest = fmax(*steepest, fabs(slope));
+    }
+    return true;
+}
+
+/* The slope of the augmented Lagrangian is its derivative along a step, with multipliers, a bound that acts, and one that
+   does not. */
+GPROJT_TEST(slopes_of_slides) {
+    static const double start[2] = {-0.3, 1};
+    gproj_system *s = gprojt_system(NULL, 2, 2, start);
+    gproj_term square[2] = {{0, 0, 1}, {1, 1, 1}};
+    gproj_solve_options options;
+    double steepest = 0;
+    memset(&options, 0, sizeof options);
+    options.nearest = true, options.on_iteration = gprojt_see_slopes, options.user = &steepest;
+    gprojt_add_group(s, "circle", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "wish", GPROJ_WISH, 1);
+    gprojt_add_group(s, "bounds", GPROJ_BOUND, 1);
+    gproj_system_add_row(s, 0, 2, square, -1, 0);
+    gprojt_add_linear(s, 1, 0, 1, -3, 0);
+    gprojt_add_linear(s, 1, 1, 1, -4, 0);
+    gprojt_add_linear(s, 2, 0, -1, 0.5, 0); /* x <= 1/2 */
+    gprojt_add_linear(s, 2, 1, 1, 5, 1);    /* y >= -5 */
+    GPROJT_CHECK(gproj_system_solve(s, 60, &options).outcome == GPROJ_CONVERGED && steepest > 1e-3);
+    GPROJT_NEAR(gproj_system_values(s)[0], 0.5, 1e-6);
+    gproj_system_destroy(s);
+}
+
 /* What a callback may not do: it would pull the arrays from under the solve. */
 typedef struct gprojt_meddler {
     int what;
@@ -1560,6 +1602,7 @@ int main(void) {
     GPROJT_RUN(failed_by_an_error_on_the_way);
     GPROJT_RUN(failed_by_an_error_of_a_callback);
     GPROJT_RUN(refused_slides);
+    GPROJT_RUN(slopes_of_slides);
     GPROJT_RUN(callbacks_may_not_rebuild);
     GPROJT_RUN(values_that_are_no_numbers);
     GPROJT_RUN(rows_that_overflow);

@@ -385,10 +385,16 @@ static double gprojt_gauss_variation(const gproj_mesh *mesh) {
 }
 
 GPROJT_TEST(gauss_variation) {
-    gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(1)); /* a cube: 8 triangles of area sqrt(3) / 2 */
     int shape;
-    GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 4 * sqrt(3.0), 1e-13);
-    gproj_mesh_destroy(mesh);
+    gproj_mesh *mesh;
+    for (shape = 0; shape < 2; ++shape) { /* a cube: 8 triangles of area sqrt(3) / 2; a vertex without faces adds nothing */
+        gprojt_soup s = gprojt_cube_sphere(1);
+        if (shape == 1) gprojt_add_vertex(&s, 9, 9, 9);
+        mesh = gprojt_mesh_of(s);
+        GPROJT_CHECK(mesh->isolated_count == shape);
+        GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 4 * sqrt(3.0), 1e-13);
+        gproj_mesh_destroy(mesh);
+    }
     mesh = gprojt_mesh_of(gprojt_cube_sphere(16));
     GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).gauss_variation, 12.566370614359172, 0.1);
     gproj_mesh_destroy(mesh);

@@ -625,6 +625,41 @@ GPROJT_TEST(wishes_that_change_on_the_way) {
     }
 }
 
+typedef struct gprojt_kinds {
+    double x[3];
+    bool tangential; /* at the last refresh */
+    int32_t straight;
+} gprojt_kinds;
+
+static void gprojt_see_kind(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    gprojt_kinds *kinds = (gprojt_kinds *)user;
+    const double *x = gproj_system_values(s);
+    (void)group;
+    if (!progress->tangential && memcmp(kinds->x, x, sizeof kinds->x) != 0) {
+        GPROJT_CHECK(!kinds->tangential);
+        ++kinds->straight;
+    }
+    memcpy(kinds->x, x, sizeof kinds->x);
+    kinds->tangential = progress->tangential;
+}
+
+/* Before a step that does not follow the constraints rows are refreshed for such a step. */
+GPROJT_TEST(refreshes_know_the_step_that_follows) {
+    static const double start[3] = {0.2, 0.3, 2}, wish[3] = {3, 1, 1}, a[3] = {1, 2, 0.5};
+    gproj_system *s = gprojt_one_point(start, wish, 1);
+    gprojt_kinds kinds;
+    gproj_group plane;
+    memset(&plane, 0, sizeof plane);
+    memcpy(kinds.x, start, sizeof start);
+    kinds.straight = 0, kinds.tangential = false;
+    plane.name = "plane", plane.schedule = gproj_keep(1);
+    plane.refresh = gprojt_see_kind, plane.refresh_user = &kinds;
+    gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+    gprojt_add_linear(s, gproj_system_add_group(s, &plane), 2, 1, 0, 0);
+    GPROJT_CHECK(gprojt_solve_nearest(s, 60).outcome == GPROJ_CONVERGED && kinds.straight > 0 && kinds.tangential);
+    gproj_system_destroy(s);
+}
+
 /* Wishes without weight ask for nothing, and neither do rows without weight, be they bounds. */
 GPROJT_TEST(without_weight) {
     gproj_system *s = gprojt_well(NULL, 0);
@@ -799,6 +834,7 @@ int main(void) {
     GPROJT_RUN(honest_verdicts);
     GPROJT_RUN(sentences_where_constraints_hold);
     GPROJT_RUN(wishes_that_change_on_the_way);
+    GPROJT_RUN(refreshes_know_the_step_that_follows);
     GPROJT_RUN(without_weight);
     GPROJT_RUN(wishes_beyond_all_numbers);
     GPROJT_RUN(wishes_stay_on);

@@ -299,6 +299,9 @@ GPROJT_TEST(curves_from_meshes) {
     GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 2, NULL, &error) && error.code == GPROJ_ERROR_DEGENERATE);
     GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 3, NULL, &error) &&
                  strstr(error.message, "polyline 3 of a mesh that has 3"));
+    mesh->polyline_count = 1; /* whatever stands in the arrays behind the last one */
+    GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    mesh->polyline_count = 3;
     GPROJT_CHECK(!gproj_curve_from_loop(mesh, -1, NULL, &error) && strstr(error.message, "boundary loop -1"));
     mesh->position[4] = NAN;
     GPROJT_CHECK(!gproj_curve_from_loop(mesh, 0, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
