@@ -621,6 +621,67 @@ GPROJT_TEST(a_gliding_boundary_goes_and_comes_back) {
     }
 }
 
+/* A boundary loop has no ends: all of its vertices can go along it, forwards and backwards. */
+GPROJT_TEST(boundaries_glide_all_the_way_round) {
+    int back, l;
+    for (back = 0; back < 2; ++back) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_tube(9, 3));
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        double target[3 * 18], *before = gprojt_keep(mesh);
+        int32_t vertex[18], count = 0, h, k;
+        for (l = 0; l < 2; ++l) {
+            h = mesh->loop_halfedge[l];
+            do {
+                int32_t to = mesh->origin[back ? mesh->prev[h] : mesh->next[h]];
+                vertex[count] = mesh->origin[h];
+                for (k = 0; k < 3; ++k)
+                    target[3 * count + k] = 0.7 * before[3 * mesh->origin[h] + k] + 0.3 * before[3 * to + k];
+                ++count;
+                h = mesh->next[h];
+            } while (h != mesh->loop_halfedge[l]);
+        }
+        GPROJT_CHECK(count == 18 && gprojt_count_corners(form, mesh) == 0);
+        gproj_add_gliding_boundary(form, 1);
+        gproj_add_targets(form, 18, vertex, target, 1);
+        GPROJT_CHECK(gproj_solve(form, 40, NULL).outcome == GPROJ_CONVERGED);
+        for (k = 0; k < 18; ++k)
+            GPROJT_NEAR(gprojt_far(mesh->position + 3 * vertex[k], target + 3 * k) / gprojt_unit(form), 0, 1e-9);
+        GPROJT_NEAR(gprojt_off_boundary(form, mesh, before), 0, 1e-9);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(before);
+    }
+}
+
+/* Vertices of a bent strip that glide along the boundary, which all of them are on, are not held, but for the corners; fixed
+   ones are. */
+GPROJT_TEST(vertices_that_glide_are_not_held) {
+    int glide;
+    for (glide = 0; glide < 2; ++glide) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(6, 1));
+        gproj_form *form;
+        gproj_result result;
+        int32_t v;
+        for (v = 0; v < 14; ++v) { /* twisted */
+            mesh->position[3 * v] = v % 7, mesh->position[3 * v + 1] = v / 7;
+            mesh->position[3 * v + 2] = v / 7 * 0.1 * (v % 7);
+        }
+        form = gproj_form_create(mesh, NULL);
+        GPROJT_CHECK(gprojt_count_boundary(mesh) == mesh->vertex_count && gprojt_count_corners(form, mesh) == 4);
+        gproj_add_planarity(form, 1);
+        if (glide)
+            gproj_add_gliding_boundary(form, 1);
+        else
+            gproj_add_fixed_boundary(form, 1);
+        result = gproj_solve(form, 1, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "because 4 of its vertices are held") != NULL) == !glide);
+        GPROJT_CHECK(glide == !strstr(result.message, " are held"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A boundary loop in one point is no curve: its vertices stay there, and the other loop is glided on. */
 GPROJT_TEST(a_boundary_loop_in_one_point) {
     int all;
@@ -2921,6 +2982,8 @@ int main(void) {
     GPROJT_RUN(gliding_from_the_start);
     GPROJT_RUN(gliding_verdicts);
     GPROJT_RUN(a_gliding_boundary_goes_and_comes_back);
+    GPROJT_RUN(boundaries_glide_all_the_way_round);
+    GPROJT_RUN(vertices_that_glide_are_not_held);
     GPROJT_RUN(a_boundary_loop_in_one_point);
     GPROJT_RUN(gliding_on_the_own_boundary);
     GPROJT_RUN(corners);

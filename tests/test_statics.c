@@ -2160,6 +2160,28 @@ GPROJT_TEST(loads_of_any_size) {
     }
 }
 
+/* Loads too large for their mean are refused even if a slide takes them: nothing is told then. */
+GPROJT_TEST(loads_too_large_tell_nothing) {
+    static const uint8_t slides[2] = {1, 0};
+    static const int32_t pins[2] = {0, 5};
+    gproj_mesh *mesh = gprojt_hill(TRIANGLES, 3, 10, 2);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_supports supports = {2, pins, slides};
+    gproj_loads loads = gprojt_no_loads();
+    double *load = gprojt_numbers(3 * mesh->vertex_count), *answer = gprojt_numbers(3 * mesh->vertex_count);
+    gproj_error error;
+    load[2] = -1e200;
+    loads.point_load = load;
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    answer[0] = answer[mesh->vertex_count - 1] = 7;
+    GPROJT_CHECK(gproj_find_forces(form, NULL, answer, &error) == GPROJ_ERROR_NUMBER && answer[0] == 7);
+    GPROJT_CHECK(strstr(error.message, "too large") && answer[mesh->vertex_count - 1] == 7);
+    GPROJT_CHECK(gproj_find_imbalance(form, answer, &error) == GPROJ_ERROR_NUMBER && answer[0] == 7);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(load), free(answer);
+}
+
 int main(void) {
     GPROJT_RUN(gradients);
     GPROJT_RUN(load_rows_are_tangent);
@@ -2206,6 +2228,7 @@ int main(void) {
     GPROJT_RUN(a_point_is_no_equilibrium);
     GPROJT_RUN(huge_forces_are_no_equilibrium);
     GPROJT_RUN(loads_of_any_size);
+    GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
