@@ -5860,7 +5860,6 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
     memset(out, 0, sizeof *out);
     an.graph = graph, an.out = out, an.keep = keep, an.keep_order = options->disable_postorder;
     gproji_pool_start(&an.pool, keep->heap);
-    gproji_pool_start(&condensed.pool, keep->heap);
     /* 1. Memory for everything that has an entry for each node. */
     out->columns = columns;
     out->nodes = graph->nodes;
@@ -6853,21 +6852,19 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
 /* Reads entry j of an array of bounds: `none`, which is -NONE for lower and NONE for upper ones, if the array is NULL
    or the entry is the infinity on that side. Fails for NaN, the other infinity, and numbers beyond 1e50. Infinities are
    told by their bits: comparisons may be compiled for finite numbers only. */
-GPROJI_INTERNAL bool gproji_squares_bound(gproji_squares *s, const char *name, const double *bound, int32_t j,
+GPROJI_INTERNAL void gproji_squares_bound(gproji_squares *s, const char *name, const double *bound, int32_t j,
                                           double none, double *out) {
     uint64_t bits;
     *out = none;
-    if (!bound) return true;
+    if (!bound) return;
     memcpy(&bits, &bound[j], sizeof bits);
-    if (!gproji_is_finite(bound[j]) && (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0)) return true;
-    if (gproji_squares_finite(bound[j])) {
+    if (!gproji_is_finite(bound[j]) && (bits << 12) == 0 && ((bits >> 63) != 0) == (none < 0)) return;
+    if (gproji_squares_finite(bound[j]))
         *out = bound[j];
-        return true;
-    }
-    s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
-                          "least squares: %s[%d] is %g, but a bound is a number up to 1e50, or %sINFINITY for none",
-                          name, j, bound[j], none < 0 ? "-" : "");
-    return false;
+    else
+        s->code = gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
+                              "least squares: %s[%d] is %g, but a bound is a number up to 1e50, or %sINFINITY for none",
+                              name, j, bound[j], none < 0 ? "-" : "");
 }
 
 /* Takes the arrays whose sizes are known, and reads the bounds. */
@@ -6899,9 +6896,8 @@ GPROJI_INTERNAL void gproji_squares_begin(gproji_squares *s) {
         return;
     }
     for (j = 0; j < n && s->code == GPROJ_OK; ++j) {
-        if (!gproji_squares_bound(s, "lower", p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]) ||
-            !gproji_squares_bound(s, "upper", p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]))
-            return;
+        gproji_squares_bound(s, "lower", p->lower, j, -GPROJI_SQUARES_NONE, &s->lower[j]);
+        gproji_squares_bound(s, "upper", p->upper, j, GPROJI_SQUARES_NONE, &s->upper[j]);
         if (s->lower[j] > s->upper[j])
             s->code =
                 gproji_fail(s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VARIABLE, j,
