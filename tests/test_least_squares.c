@@ -589,6 +589,23 @@ GPROJT_TEST(cancellation_is_noise) {
         }
 }
 
+/* A fixed variable mends no row, however large its terms in others are: there is nothing to find, and that is certain. */
+GPROJT_TEST(fixed_variables_leave_no_doubt) {
+    squares s = squares_of(3, 2, 3);
+    gproj_least_squares_result r;
+    s.row[0] = 0, s.value[0] = 1e10, s.row[1] = 1, s.value[1] = 1; /* x = 1, in large terms, and x = 3; y = 2 */
+    s.row[2] = 2, s.value[2] = 1;
+    s.start[1] = 2, s.start[2] = 3;
+    s.b[0] = 1e10, s.b[1] = 3, s.b[2] = 2;
+    s.p.upper = s.upper;
+    s.lower[0] = s.upper[0] = 1, s.upper[1] = 10;
+    r = solve(&s);
+    GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && s.x[0] == 1);
+    GPROJT_NEAR(s.x[1], 2, 1e-10);
+    GPROJT_NEAR(r.residual, 2, 1e-10);
+    squares_free(&s);
+}
+
 /* Entries of one place whose products sum to less than 0, by rounding alone: there is no factor, and nothing is made up. */
 GPROJT_TEST(entries_that_cancel_to_less_than_nothing) {
     squares s = squares_of(2, 2, 4);
@@ -908,8 +925,11 @@ GPROJT_TEST(bad_bounds) {
     GPROJT_CHECK(strstr(error.message, "lower[2] = 0 is above upper[2] = -0.5"));
     s.upper[2] = nan;
     gproj_solve_least_squares(&s.p, NULL, s.x, NULL, &error);
-    GPROJT_CHECK(strstr(error.message, "upper[2] is ") && strstr(error.message, "INFINITY for none"));
-    s.upper[2] = 1;
+    GPROJT_CHECK(strstr(error.message, "upper[2] is ") && strstr(error.message, "or INFINITY for none"));
+    s.lower[2] = 1e60; /* and of two wrong ones the first is told */
+    gproj_solve_least_squares(&s.p, NULL, s.x, NULL, &error);
+    GPROJT_CHECK(strstr(error.message, "lower[2] is 1e+60, but") && strstr(error.message, "or -INFINITY for none"));
+    s.lower[2] = 0, s.upper[2] = 1;
     check_solved(&s, 8);
     squares_free(&s);
 }
@@ -988,6 +1008,7 @@ int main(void) {
     GPROJT_RUN(without_bounds);
     GPROJT_RUN(columns_of_all_sizes);
     GPROJT_RUN(cancellation_is_noise);
+    GPROJT_RUN(fixed_variables_leave_no_doubt);
     GPROJT_RUN(entries_that_cancel_to_less_than_nothing);
     GPROJT_RUN(tiny_numbers);
     GPROJT_RUN(unbounded_means_unbounded);

@@ -268,6 +268,11 @@ GPROJT_TEST(matrices) {
         if (j == 0) memcpy(order, gproj_cholesky_permutation(c), sizeof order);
         GPROJT_CHECK(memcmp(order, gproj_cholesky_permutation(c), sizeof order) == 0);
     }
+    /* Other orders have no such limit: a hub that is eliminated first leaves all others adjacent. */
+    for (j = 0; j < 200; ++j) path[j] = j, start[j + 1] = 200;
+    options.ordering = GPROJ_ORDERING_NATURAL;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 200, start, path, &options) == GPROJ_OK &&
+                 gproj_cholesky_get_info(c).exact_entries == 200 * 201 / 2);
     gproj_cholesky_destroy(c);
     memset(start, 0, sizeof start);
     memset(&problem, 0, sizeof problem);

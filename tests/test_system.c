@@ -934,6 +934,32 @@ GPROJT_TEST(wide_rows_stay_out_of_the_matrix) {
     gprojt_twin_free(&t);
 }
 
+/* Points along a chain, whose coordinates have rows of their own: the matrix is three bands. A row at each point with all of its
+   coordinates makes one band of blocks. A column of L has one entry below the diagonal, or the rest of its block and the next. */
+GPROJT_TEST(coordinates_without_a_common_row_are_apart) {
+    enum {
+        POINTS = 30
+    };
+    int32_t i, k, common;
+    for (common = 0; common < 2; ++common) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_system_add_variables(s, 3 * POINTS, 3, NULL);
+        gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+        for (i = 0; i < 3 * POINTS; ++i) {
+            gproj_term term[3] = {{i, -1, 1}, {i + 3, -1, -1}};
+            gprojt_add_linear(s, 0, i, 1, -1, i);
+            if (i + 3 < 3 * POINTS) gproj_system_add_row(s, 0, 2, term, 0, i);
+            for (k = 0; k < 3; ++k) term[k] = gprojt_term(i + k, -1, 1);
+            if (common && i % 3 == 0) gproj_system_add_row(s, 0, 3, term, -3, i);
+        }
+        GPROJT_CHECK(gproj_system_solve(s, 5, NULL).outcome == GPROJ_CONVERGED);
+        for (i = 0; i < 3 * POINTS; ++i) GPROJT_NEAR(gproj_system_values(s)[i], 1, 1e-9);
+        GPROJT_CHECK(gprojt_inside_factor(s).exact_entries ==
+                     (common ? 6 * POINTS + 9 * (POINTS - 1) : 3 * (POINTS + POINTS - 1)));
+        gproj_system_destroy(s);
+    }
+}
+
 /* Nothing but wide rows: the matrix is eps^2 I. */
 GPROJT_TEST(steps_with_wide_rows_only) {
     uint64_t seed = 8;
@@ -1040,6 +1066,28 @@ GPROJT_TEST(placed_rows) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_placed_rows, NULL) >= 20);
 }
 
+/* Rows of two variables that share their terms still do when they are sorted by the order of elimination: those that are sorted
+   already have these terms, all others the same copy. */
+GPROJT_TEST(sorted_rows_share_terms) {
+    static const gproj_term two[2] = {{0, -1, -1}, {1, -1, 1}};
+    gproj_system *s = gproj_system_create(NULL);
+    int32_t i, way;
+    gproj_system_add_variables(s, 20, 1, NULL);
+    gprojt_add_group(s, "chain", GPROJ_CONSTRAINT, 1);
+    gprojt_add_group(s, "first", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 1, 0, 1, -5, 0);
+    for (i = 0; i < 19; ++i)
+        for (way = 0; way < 2; ++way) { /* each difference from both ends */
+            int32_t *local = gproji_add_placed_rows(s, 0, 0, 1, 2, two, 2, way ? 1 : -1, i);
+            GPROJT_REQUIRE(local);
+            local[way] = i, local[1 - way] = i + 1;
+        }
+    GPROJT_CHECK(gproj_system_solve(s, 20, NULL).outcome == GPROJ_CONVERGED && !s->schur.on);
+    for (i = 0; i < 20; ++i) GPROJT_NEAR(gproj_system_values(s)[i], 5 + i, 1e-9);
+    GPROJT_CHECK(s->group[0].term_count == 4);
+    gproj_system_destroy(s);
+}
+
 /* -- memory -- */
 
 /* Every way of taking memory; true when nothing failed. */
@@ -1144,10 +1192,12 @@ int main(void) {
     GPROJT_RUN(steps_with_global_rows_are_precise);
     GPROJT_RUN(a_sphere_of_10000_dimensions);
     GPROJT_RUN(wide_rows_stay_out_of_the_matrix);
+    GPROJT_RUN(coordinates_without_a_common_row_are_apart);
     GPROJT_RUN(steps_with_wide_rows_only);
     GPROJT_RUN(empty_systems);
     GPROJT_RUN(grows_between_solves);
     GPROJT_RUN(placed_rows);
+    GPROJT_RUN(sorted_rows_share_terms);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(memory_is_accounted_and_limited);
     GPROJT_RUN(room_for_named_variables);
