@@ -11830,7 +11830,7 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
 GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
-    int32_t guided = gproji_min(GPROJI_NEAREST_GUIDED, (iterations + 2) / 3);
+    int32_t guided = GPROJI_NEAREST_GUIDED;
     int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
     int32_t last = iterations - gproji_min(restore, iterations / 3), i;
     uint32_t state = 1;

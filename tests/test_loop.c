@@ -1336,6 +1336,28 @@ GPROJT_TEST(safeguards_give_way) {
     GPROJT_CHECK(last[1] > last[0] && last[1] < 200);
 }
 
+/* Safeguards are made for what there is: one that is violated by rounding at the start does not act in the first step, which
+   it would hold back, one that is violated by more does until the step is found again. */
+GPROJT_TEST(rounding_chooses_no_safeguards) {
+    static const double start[1] = {0}, phi[5] = {1e-8, 5e-10, 0, -5e-10, -1e-8};
+    int32_t k;
+    for (k = 0; k < 5; ++k) {
+        gproj_system *s = gprojt_system(NULL, 1, 1, start);
+        gproj_solve_options options;
+        gprojt_watch watch;
+        int32_t group;
+        memset(&watch, 0, sizeof watch);
+        options = gprojt_watched(&watch);
+        gprojt_add_group(s, "one", GPROJ_CONSTRAINT, 1);
+        group = gprojt_add_role(s, "safe", GPROJ_BOUND, GPROJI_SAFEGUARD);
+        gprojt_add_linear(s, 0, 0, 1, -1, 0);
+        gprojt_add_linear(s, group, 0, 1, phi[k], 0);
+        GPROJT_CHECK(gproj_system_solve(s, 9, &options).outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(watch.seen[0].factorisations == (k < 4 ? 1 : 2));
+        gproj_system_destroy(s);
+    }
+}
+
 /* A guard's row that is violated at the start gets a multiplier at once. */
 static bool gprojt_wake_at_the_start(const gproj_host *host, void *user) {
     static const gproj_term sum[2] = {{0, -1, 1}, {15, -1, 1}};
@@ -1458,11 +1480,15 @@ GPROJT_TEST(changes_of_a_callback_come_before_stalling) {
 /* As many iterations as can be asked for. */
 GPROJT_TEST(int32_max_iterations) {
     static const double start[1] = {5};
+    gproj_solve_options options;
     gproj_system *s = gprojt_conflict();
     GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_STALLED);
     gproj_system_destroy(s);
     s = gprojt_square_plus(3, -4);
     GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_CONVERGED);
+    memset(&options, 0, sizeof options);
+    options.nearest = true, gproj_system_values(s)[0] = 3;
+    GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, &options).outcome == GPROJ_CONVERGED);
     gproj_system_destroy(s);
     s = gprojt_system(NULL, 1, 1, start); /* a wish for ever */
     gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
@@ -1637,6 +1663,7 @@ int main(void) {
     GPROJT_RUN(metrics_rest_at_the_end);
     GPROJT_RUN(no_stiffness_at_the_end);
     GPROJT_RUN(safeguards_give_way);
+    GPROJT_RUN(rounding_chooses_no_safeguards);
     GPROJT_RUN(guards_wake_without_memory);
     GPROJT_RUN(changes_of_a_callback_are_judged);
     GPROJT_RUN(changes_of_a_callback_come_before_stalling);

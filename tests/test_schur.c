@@ -479,6 +479,21 @@ GPROJT_TEST(elements_of_all_kinds) {
     }
 }
 
+/* Rows of faces, or vertices, whose numbers are none are elements of their own, each. */
+GPROJT_TEST(elements_of_numbers_beyond_all_faces) {
+    static const int32_t number[6] = {-1, -1, -24, INT32_MIN, INT32_MAX, INT32_MAX};
+    uint64_t seed = 74;
+    int32_t place, k, first[25];
+    for (place = 0; place < 2; ++place) {
+        gproj_system *s = gprojt_nodes_and_groups(first, &seed);
+        for (k = 0; k < 8; ++k) gprojt_add_local(s, 0, first, 24, 4, &seed);
+        for (k = 0; k < 6; ++k) gprojt_add_joining(s, place, first, 24, -1, number[k], &seed);
+        GPROJT_CHECK(gprojt_plain_step_error(s, 0.01) < 1e-9);
+        GPROJT_CHECK(s->schur.on && s->schur.elements == 8 + 6);
+        gproj_system_destroy(s);
+    }
+}
+
 /* Where an element has no more rows than local unknowns, or rows of faces are many after all, the matrix is the one for all
    variables. */
 GPROJT_TEST(not_taken_where_they_do_not_pay) {
@@ -1141,6 +1156,7 @@ int main(void) {
     GPROJT_RUN(steps_are_those_of_the_dense_matrix);
     GPROJT_RUN(steps_of_many_elements);
     GPROJT_RUN(elements_of_all_kinds);
+    GPROJT_RUN(elements_of_numbers_beyond_all_faces);
     GPROJT_RUN(not_taken_where_they_do_not_pay);
     GPROJT_RUN(large_fronts);
     GPROJT_RUN(taken_where_only_constraints_act);

@@ -111,6 +111,7 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {GPROJT_SQUARE "f 1 2 /3\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'/3' is not"},
     {GPROJT_SQUARE "f a b c\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'a' is not a vertex index"},
     {GPROJT_SQUARE "f 1 2 3\\", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'3\\' is not"}, /* goes on nowhere */
+    {GPROJT_SQUARE "f 1-2 3 4\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'1-2' is not a vertex index"},
     {GPROJT_SQUARE "f 1 2 -\n", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 5, "'-' is not"},
     {GPROJT_SQUARE "f\n", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 5, "a face with 0 corners"},
     {GPROJT_SQUARE "f 1 2 \\\n\n", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 5, "line 5: a face with 2 corners"},
