@@ -321,6 +321,21 @@ GPROJT_TEST(dense_runs_of_pieces) {
     }
 }
 
+/* A group that begins where the one before has ended, in the child and in the parent, goes on in its piece. */
+GPROJT_TEST(dense_groups_without_gaps_are_one) {
+    const gproji_kernels *kernels;
+    int32_t at[100], to[100], kind, k;
+    for (k = 0; k < 100; ++k) at[k] = k, to[k] = 11 + k;
+    FOR_ALL_KERNELS {
+        gproji_piece one[40], many[300];
+        int32_t count = gproji_find_pieces(kernels, 1, at, 0, 100, to, 48, one);
+        GPROJT_REQUIRE(gproji_find_pieces(kernels, 100, at, 0, 100, to, 48, many) == count);
+        for (k = 0; k < count; ++k)
+            GPROJT_CHECK(one[k].from == many[k].from && one[k].to == many[k].to && one[k].rows == many[k].rows &&
+                         one[k].mask == many[k].mask && one[k].run == many[k].run);
+    }
+}
+
 /* The columns of a panel follow each other, each from the first row of its block on; together eliminated ones have the
    stride that kernels are told. */
 GPROJT_TEST(dense_columns_of_panels) {
@@ -381,6 +396,7 @@ int main(void) {
     GPROJT_RUN(dense_failing_pivots);
     GPROJT_RUN(dense_add);
     GPROJT_RUN(dense_runs_of_pieces);
+    GPROJT_RUN(dense_groups_without_gaps_are_one);
     GPROJT_RUN(dense_columns_of_panels);
     return gprojt_report();
 }
