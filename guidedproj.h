@@ -23034,7 +23034,8 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         length = strlen(text);
         between = ", ";
     }
-    if (!known && form->solve.loop.options.nearest && form->solve.loop.iterations <= GPROJI_SAFE_MOST)
+    if (!known && form->solve.loop.options.nearest && !form->solve.loop.options.skip_guard &&
+        form->solve.loop.iterations <= GPROJI_SAFE_MOST)
         gproji_format(text + length, size - length, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
     else if (!known && length + sizeof help <= size)
         gproji_append(text, size, length, help, sizeof help - 1);

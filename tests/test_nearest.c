@@ -1,5 +1,6 @@
 /* test_nearest.c - >>loop: the nearest point where the constraints hold, by multipliers. */
 #include "gprojt_form.h"
+#include "gprojt_inside.h"
 
 static gproj_solve_options gprojt_nearest(void) {
     gproj_solve_options options;
@@ -353,6 +354,35 @@ GPROJT_TEST(spoiled_meshes_are_mended) {
         GPROJT_CHECK(mended.outcome == GPROJ_CONVERGED && mended.spoiled.total == 0);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* Safeguards that an earlier solve has added rest in one that does without: it ends as in a form that has none. */
+GPROJT_TEST(earlier_safeguards_rest) {
+    gproj_mesh *mesh = gprojt_noisy(0, 8, 0.06, 5);
+    double *before = gprojt_keep(mesh), *plain;
+    gproj_solve_options options = gprojt_nearest();
+    gproj_result result[2];
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    options.skip_guard = true;
+    result[0] = gproj_solve(form, 50, &options);
+    plain = gprojt_keep(mesh);
+    gproj_form_destroy(form);
+    gprojt_put_back(mesh, before);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    options.skip_guard = false;
+    GPROJT_CHECK(gproj_solve(form, 60, &options).spoiled.total == 0);
+    gprojt_put_back(mesh, before);
+    options.skip_guard = true;
+    result[1] = gproj_solve(form, 50, &options);
+    GPROJT_CHECK(result[0].outcome == GPROJ_CONVERGED && result[0].spoiled.total > 0);
+    GPROJT_CHECK(!strstr(result[0].message, "more than 50 iterations")); /* of no use without safeguards */
+    GPROJT_CHECK(result[1].outcome == GPROJ_CONVERGED && result[1].spoiled.total > 0);
+    GPROJT_NEAR(gprojt_largest_move(plain, mesh->position, mesh->vertex_count) / gprojt_unit(form), 0, 1e-9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before), free(plain);
 }
 
 /* Twisted patches with hardly a flat mesh nearby whose edges are whole: the constraints hold in any case, and what is
@@ -755,6 +785,72 @@ GPROJT_TEST(closeness_rests_where_it_is_not_wanted) {
     gproj_mesh_destroy(mesh);
 }
 
+/* The square or the triangle of the next test, turned about the x-axis by `angle` degrees and made smaller, in the form's
+   unit; the normal of a square turns with it. */
+static void gprojt_place_face(const gproj_form *form, const gproj_mesh *mesh, int32_t face, double angle, double size,
+                              double *values) {
+    double c = cos(angle * acos(-1.0) / 180), s = sin(angle * acos(-1.0) / 180), centre[3], scale;
+    int32_t normal = gprojt_inside_normal(form, face), h = mesh->face_halfedge[face], k;
+    gproj_form_units(form, centre, &scale);
+    for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
+        const double *p = mesh->position + 3 * mesh->origin[h];
+        double *to = values + 3 * mesh->origin[h];
+        to[0] = (size * p[0] - centre[0]) * scale;
+        to[1] = (c * p[1] - centre[1]) * scale;
+        to[2] = (s * p[1] - centre[2]) * scale;
+    }
+    if (normal >= 0) values[normal] = 0, values[normal + 1] = -s, values[normal + 2] = c;
+}
+
+/* A step is refused that takes three quarters of a face's area, seen along its normal before or along the one when the solve
+   began; faces without area are let go, and a solve may do without the guard. */
+GPROJT_TEST(steps_that_turn_faces_are_refused) {
+    static const struct {
+        double angle[2], size[2]; /* before the step, after it */
+        bool refused[2];          /* for a square; for a triangle, which has the first normal only */
+    } step[10] = {{{0, 0}, {1, 0.26}, {false, false}}, {{0, 0}, {1, 0.24}, {true, true}},
+                  {{0, 0}, {1, -1}, {true, true}},     {{0, 0}, {0.5, 0.13}, {false, false}},
+                  {{0, 0}, {0.5, 0.12}, {true, true}}, {{0, 75}, {1, 1}, {false, false}},
+                  {{0, 76}, {1, 1}, {true, true}},     {{60, 82}, {1, 1}, {false, false}},
+                  {{60, 84}, {1, 1}, {true, true}},    {{-60, 20}, {1, 1}, {true, false}}};
+    static const double target[3] = {0, 0, 1};
+    static const int32_t corner = 0;
+    gprojt_soup soup = gprojt_quad_grid(1, 1);
+    gproj_solve_options options = gprojt_nearest();
+    double values[2][64];
+    gproj_system *system;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    int32_t v, face, end, i, on;
+    for (v = 0; v < 4; ++v) soup.position[3 * v + 2] = 0;
+    for (v = 0; v < 6; ++v) gprojt_add_vertex(&soup, v % 3 - 1.0, v < 3 && v != 1 ? 1 : 0, 0);
+    gprojt_add_triangle(&soup, 4, 5, 6);
+    gprojt_add_triangle(&soup, 7, 8, 9); /* in a line */
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    system = gproj_form_system(form);
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, 1, &corner, target, 1); /* something to do */
+    GPROJT_REQUIRE(gproj_system_variable_count(system) <= 64);
+    for (on = 1; on >= 0; --on) {
+        options.skip_guard = !on;
+        GPROJT_REQUIRE(gproj_solve_begin(form, 10, &options, NULL));
+        for (i = 0; i < 10; ++i)
+            for (face = 0; face < 3; ++face) {
+                bool refused = on && face < 2 && step[i].refused[face];
+                for (end = 0; end < 2; ++end) {
+                    memcpy(values[end], gproj_system_values(system),
+                           (size_t)gproj_system_variable_count(system) * sizeof(double));
+                    gprojt_place_face(form, mesh, face, step[i].angle[end], step[i].size[end], values[end]);
+                }
+                GPROJT_CHECK(gprojt_inside_refuses_turned(form, values[0], values[1]) == refused);
+            }
+        gproj_solve_stop(form);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A face without area cannot lose any: it does not refuse the steps of the others. */
 GPROJT_TEST(faces_without_area) {
     gproj_mesh *mesh = gprojt_noisy(0, 5, 0.05, 4);
@@ -827,6 +923,7 @@ int main(void) {
     GPROJT_RUN(optimality_has_no_unit);
     GPROJT_RUN(moves_less_than_projection);
     GPROJT_RUN(spoiled_meshes_are_mended);
+    GPROJT_RUN(earlier_safeguards_rest);
     GPROJT_RUN(safeguards_yield_to_constraints);
     GPROJT_RUN(conditions_of_kuhn_and_tucker);
     GPROJT_RUN(nothing_to_do);
@@ -839,6 +936,7 @@ int main(void) {
     GPROJT_RUN(wishes_beyond_all_numbers);
     GPROJT_RUN(wishes_stay_on);
     GPROJT_RUN(closeness_rests_where_it_is_not_wanted);
+    GPROJT_RUN(steps_that_turn_faces_are_refused);
     GPROJT_RUN(faces_without_area);
     GPROJT_RUN(real_meshes);
     GPROJT_RUN(every_allocation_fails_once);
