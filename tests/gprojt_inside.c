@@ -26,6 +26,9 @@ bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group) {
 bool gprojt_inside_refuses(const gproj_form *form, const double *before, const double *after) {
     return gproji_refuse_corners((void *)(uintptr_t)form, before, after);
 }
+bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, const double *after) {
+    return gproji_refuse_turned((void *)(uintptr_t)form, before, after);
+}
 
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { return gproji_ends_better(a, b); }
 

@@ -31,8 +31,9 @@ bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group);
    that the last step has left. Written to the form if `set`, else read from it. */
 void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]);
 
-/* Do the safeguards of corners refuse a step between these variables? */
+/* Do the safeguards of corners refuse a step between these variables? Does the guard of faces? */
 bool gprojt_inside_refuses(const gproj_form *form, const double *before, const double *after);
+bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, const double *after);
 
 /* Is end a of an attempt better than b? */
 bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);

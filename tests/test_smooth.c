@@ -759,6 +759,27 @@ GPROJT_TEST(metrics_come_and_go) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Steps are measured by the change of each vertex and of each edge, and of each force that there is, the first one included. */
+GPROJT_TEST(metrics_measure_all) {
+    static const int32_t pins[3] = {3, 18, 35};
+    gproj_mesh *mesh = gprojt_twisted(5, 0.1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_loads loads;
+    gproj_supports supports = {3, pins, NULL};
+    int32_t e;
+    memset(&loads, 0, sizeof loads);
+    loads.density = 1;
+    gprojt_add_planar(form, NULL);
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(gproj_force_variable(form, e) >= 0);
+    gproj_solve(form, 2, &options);
+    GPROJT_CHECK(gprojt_group_named(form, "smooth change").rows == 3 * (mesh->vertex_count + mesh->edge_count));
+    GPROJT_CHECK(gprojt_group_named(form, "force change").rows == mesh->edge_count);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Points have no faces whose corners could be kept. */
 GPROJT_TEST(points_are_solved) {
     static const double p[6] = {0, 0, 0, 1, 2, 3}, to[3] = {5, 5, 5};
@@ -977,6 +998,7 @@ int main(void) {
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(smooth_and_nearest_is_nearest);
     GPROJT_RUN(metrics_come_and_go);
+    GPROJT_RUN(metrics_measure_all);
     GPROJT_RUN(points_are_solved);
     GPROJT_RUN(faces_in_one_point);
     GPROJT_RUN(solved_again);
