@@ -65,7 +65,7 @@
      stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
      brake            a damping of single variables that acts only after steps have failed
      guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way
-     attempt          a run of a smooth solve, which may begin again with other stiffness
+     attempt          a run of a smooth solve, which may begin again in another way
      pass             (a value of a saved state) count, write, check or read it, see >>stream
      verdict          the outcome of a solve and a sentence about it
      spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
@@ -1495,9 +1495,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
      limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
-   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again with stiffer steps: at
-     most three attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames
-     (gproj_solve_begin).
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again, first guided by closeness
+     to where it began with weights 0.3 * 0.7^n for 20 iterations, then with stiffer steps: at most three attempts with
+     `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -23131,10 +23131,15 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
    meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
 static const double gproji_metric_force = 0.3; /* of changes of forces, once steps fail */
-/* The stiffness with which the attempts of a solve begin. */
-static const double gproji_first_stiffness[] = {1, 10, 3};
+/* How the attempts of a smooth solve begin. Closeness to the start is no bias by default; where constraints have led
+   far away, such as a shape that hangs to one that stands, it finds what there is nearby. */
+typedef struct gproji_beginning {
+    double stiffness;
+    double closeness; /* its weight at first; it fades by 0.7 an iteration and lasts for 20 */
+} gproji_beginning;
+static const gproji_beginning gproji_beginnings[] = {{1, 0}, {10, 0.3}, {10, 0}};
 enum {
-    GPROJI_ATTEMPTS_MOST = 3,
+    GPROJI_ATTEMPTS_MOST = sizeof gproji_beginnings / sizeof *gproji_beginnings,
     GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
 };
 
@@ -23205,16 +23210,18 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
-   ends, 0 without any. If the nearest mesh is asked for, closeness defines "near". */
-GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations, bool skip, bool nearest) {
-    bool others = gproji_has_active_wish(form), wanted = !skip && !others;
+   ends, 0 without any. If the nearest mesh is asked for, closeness defines "near"; a smooth solve is guided only by the
+   closeness of its beginning. */
+GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
+                                                    const gproji_beginning *beginning, bool skip, bool nearest) {
+    bool others = gproji_has_active_wish(form), wanted = !skip && !others, near = beginning->closeness > 0;
     int32_t half = gproji_max(1, iterations - iterations / 2), closeness, i;
     gproj_schedule schedule;
-    if (wanted) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
+    if (wanted || near) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
     closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
     if (closeness >= 0) {
-        schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
-        schedule.decay = 0.3;
+        schedule = near ? gproj_fade(beginning->closeness, 20) : gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
+        schedule.decay = near ? 0.7 : 0.3;
         if (nearest && wanted) schedule = gproj_keep(1);
         gproj_system_set_schedule(form->system, closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
@@ -23266,7 +23273,8 @@ GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *
 }
 
 /* Begins form->solve; on failure its result says why. */
-GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
+GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproji_beginning *beginning,
+                                        const gproj_solve_options *options) {
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
@@ -23282,9 +23290,10 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
-    gproji_begin_forces(form, nearest, gproji_has_active_wish(form));
+    gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness > 0);
     if (!gproji_form_ready(form)) goto failed;
-    guided = gproji_set_default_guidance(form, iterations, (options && options->skip_closeness) || smooth, nearest);
+    guided = gproji_set_default_guidance(form, iterations, beginning, (options && options->skip_closeness) || smooth,
+                                         nearest);
     /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
     metric = smooth && !options->skip_closeness;
     if (metric) gproji_add_own_group(form, GPROJI_OWN_METRIC);
@@ -23300,6 +23309,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
+    if (solve->loop.stiff) gproji_begin_stiff(form->system, beginning->stiffness);
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
@@ -23383,14 +23393,12 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     return *result;
 }
 
-/* One whole solve, not in frames, numbered on from the iterations of earlier attempts. stiffness: with which smooth
-   steps begin. */
-GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier, double stiffness,
-                                            const gproj_solve_options *options) {
+/* One whole solve, not in frames, numbered on from the iterations of earlier attempts. */
+GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier,
+                                            const gproji_beginning *beginning, const gproj_solve_options *options) {
     gproj_result result;
-    if (!gproji_begin_solve(form, iterations, options)) return form->solve.loop.result;
+    if (!gproji_begin_solve(form, iterations, beginning, options)) return form->solve.loop.result;
     form->solve.loop.earlier = earlier;
-    if (form->solve.loop.stiff) gproji_begin_stiff(form->system, stiffness);
     result = gproji_run_solve(form, -1);
     result.iterations += earlier;
     return result;
@@ -23423,8 +23431,8 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
     gproji_store_positions(form, form->before);
 }
 
-/* A solve that may begin again, with steps of different stiffness: the beginning of a path decides its end. The best
-   end counts. All attempts share the iterations and the time. */
+/* A solve that may begin again in another way: the beginning of a path decides its end. The best end counts. All
+   attempts share the iterations and the time. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
     gproj_system *s = form->system;
@@ -23445,7 +23453,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         return gproji_failed_result(&form->error);
     }
     memcpy(start, x, count * sizeof *start);
-    result = gproji_attempt(form, iterations, 0, gproji_first_stiffness[0], &how);
+    result = gproji_attempt(form, iterations, 0, &gproji_beginnings[0], &how);
     for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result) && !form->solve.futile;
          ++attempt) {
         gproj_result other;
@@ -23458,7 +23466,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
-        other = gproji_attempt(form, iterations - used, used, gproji_first_stiffness[attempt], &how);
+        other = gproji_attempt(form, iterations - used, used, &gproji_beginnings[attempt], &how);
         used = other.iterations;
         /* 3. The better of the two; its seconds are those of all attempts. */
         here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || gproji_ends_better(&other, &result);
@@ -23483,8 +23491,9 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproj_result result;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
-    result = options && options->smooth && !options->nearest ? gproji_solve_smooth(form, iterations, options)
-                                                             : gproji_attempt(form, iterations, 0, 1, options);
+    result = options && options->smooth && !options->nearest
+                 ? gproji_solve_smooth(form, iterations, options)
+                 : gproji_attempt(form, iterations, 0, &gproji_beginnings[0], options);
     form->solve.finished = false;
     return result;
 }
@@ -23493,7 +23502,7 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
                                  gproj_error *error) {
     gproji_error_clear(error);
     if (gproji_form_is_open(form)) {
-        form->solve.finished = !gproji_begin_solve(form, iterations, options);
+        form->solve.finished = !gproji_begin_solve(form, iterations, &gproji_beginnings[0], options);
         if (form->solve.on) return true;
     }
     if (gproji_form_ready(form))
@@ -24287,7 +24296,7 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     gproji_schedule_release(drag, true);
     /* 2. A solve is refused during a drag, but for this one. */
     form->drag = NULL;
-    form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, NULL);
+    form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, &gproji_beginnings[0], NULL);
     form->drag = drag;
     return form->solve.on;
 }
