@@ -340,7 +340,7 @@ GPROJT_TEST(turned_and_degenerate_faces) {
 
 GPROJT_TEST(deviation_and_displacement) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 3));
-    double *before = gprojt_keep(mesh), edge = gproj_mesh_mean_edge_length(mesh), low[3], high[3], diagonal;
+    double *before = gprojt_keep(mesh), edge = gproj_mesh_mean_edge_length(mesh), low[3], high[3], diagonal, *longer;
     gproj_measures m;
     int32_t i, k, n = mesh->vertex_count;
     memcpy(low, before, sizeof low), memcpy(high, before, sizeof high);
@@ -355,6 +355,13 @@ GPROJT_TEST(deviation_and_displacement) {
     GPROJT_NEAR(m.deviation_max, 0.5 / diagonal, 1e-15);
     GPROJT_NEAR(m.deviation_rms, sqrt((0.25 + 0.01) / n) / diagonal, 1e-15);
     GPROJT_NEAR(m.displacement_mean, 0.6 / n / edge, 1e-15);
+    /* Only the original's vertices count, not what lies behind them. */
+    longer = (double *)malloc(3 * (size_t)(n + 1) * sizeof *longer);
+    if (!longer) abort();
+    memcpy(longer, before, 3 * (size_t)n * sizeof *longer);
+    for (k = 0; k < 3; ++k) longer[3 * n + k] = 1e3;
+    GPROJT_NEAR(gproj_measure(mesh, longer, NULL).deviation_max, 0.5 / diagonal, 1e-15);
+    free(longer);
     free(before);
     gproj_mesh_destroy(mesh);
 }
