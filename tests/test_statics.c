@@ -2033,10 +2033,10 @@ static bool gprojt_use_forces(const gproj_host *host, void *user) {
     form = gprojt_pinned_form(mesh, host, &loads);
     for (i = 0; i < mesh->edge_count; ++i) carrying += gproj_force_variable(form, i) >= 0;
     GPROJT_CHECK(carrying > 0 || !form || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
-    gproj_add_compression(form, mesh->edge_count, NULL, 1);
-    gproj_add_tension(form, 0, &none, 1);
-    gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1);
-    gproj_add_force_fairness(form, 0.1);
+    gprojt_added(form, gproj_add_compression(form, mesh->edge_count, NULL, 1));
+    gprojt_added(form, gproj_add_tension(form, 0, &none, 1));
+    gprojt_added(form, gproj_add_stress_bounds(form, mesh->edge_count, NULL, density, -1000, 1000, 1));
+    gprojt_added(form, gproj_add_force_fairness(form, 0.1));
     found = gproj_find_forces(form, w, NULL, &error) == GPROJ_OK;
     GPROJT_CHECK(found || !form || error.code == GPROJ_ERROR_MEMORY);
     if (form) gproj_get_reactions(form, r, NULL);
