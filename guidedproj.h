@@ -9720,7 +9720,7 @@ GPROJI_INTERNAL double gproji_schur_columns_of(const gproj_system *s, const gpro
         for (l = row->local; l < row[1].local; ++l) {
             int32_t at = g->local.at[l];
             if (at < GPROJI_BLOCK_MAX)
-                normal[(at * m + i) * GPROJI_LANES] = w * g->local.gradient[l], own = true;
+                normal[(at * m + i) * GPROJI_LANES] = w > 0 ? w * g->local.gradient[l] : 0, own = true;
             else
                 joins = true;
         }

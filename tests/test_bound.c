@@ -297,6 +297,33 @@ GPROJT_TEST(tangents_of_convex_rows) {
     }
 }
 
+static bool gprojt_see_first(void *user, gproj_system *s, const gproj_iteration *iteration) {
+    (void)s;
+    if (iteration->number == 1) *(int32_t *)user = iteration->factorisations;
+    return true;
+}
+
+/* A row that bends away from its tangent waits for the next step, where its linearisation tells that it is violated: from
+   the border of a disc the first step goes along the tangent, found once. */
+GPROJT_TEST(tangents_of_concave_rows) {
+    static const double x[2] = {1, 0}, centre[2] = {0, 0};
+    gproj_system *s = gprojt_system(NULL, 2, x);
+    gproj_solve_options options;
+    gproj_result result;
+    int32_t first = 0;
+    memset(&options, 0, sizeof options);
+    options.on_iteration = gprojt_see_first, options.user = &first;
+    gprojt_add_group(s, "disc", GPROJ_BOUND, 1);
+    gprojt_add_disc(s, 0, centre, 1, 0);
+    gprojt_add_group(s, "height", GPROJ_CONSTRAINT, 1);
+    gprojt_add_linear(s, 1, 1, 1, -0.6, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 1 && first == 1);
+    GPROJT_NEAR(gproj_system_values(s)[0], 0.8, 1e-3);
+    GPROJT_NEAR(gproj_system_values(s)[1], 0.6, 1e-12);
+    gproj_system_destroy(s);
+}
+
 /* A bound lets go of what it has held: first the wish draws against it, then away. */
 static bool gprojt_turn_round(void *user, gproj_system *s, const gproj_iteration *iteration) {
     (void)user;
@@ -550,6 +577,7 @@ int main(void) {
     GPROJT_RUN(bounds_meet_constraints);
     GPROJT_RUN(distant_bounds_do_nothing);
     GPROJT_RUN(tangents_of_convex_rows);
+    GPROJT_RUN(tangents_of_concave_rows);
     GPROJT_RUN(bounds_let_go);
     GPROJT_RUN(wide_bounds);
     GPROJT_RUN(violations_are_what_counts);

@@ -623,6 +623,10 @@ GPROJT_TEST(sentences_where_constraints_hold) {
     result = gproj_system_solve(s, 60, &options);
     GPROJT_CHECK(result.outcome == GPROJ_TIME_OUT && result.iterations > 0 && result.residual <= result.tolerance);
     GPROJT_CHECK(strstr(result.message, "but the time budget ran out before a minimum of the wishes") != NULL);
+    options = gprojt_nearest();
+    result = gproj_system_solve(s, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance, at a minimum of the wishes: ") != NULL);
     gproj_system_destroy(s);
 }
 

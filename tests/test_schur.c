@@ -494,6 +494,44 @@ GPROJT_TEST(elements_of_numbers_beyond_all_faces) {
     }
 }
 
+/* Groups that are switched off after steps by multipliers change no bit of those that follow, whatever is in their rows: at
+   nodes, in elements and dense ones. */
+GPROJT_TEST(groups_without_weight_may_overflow) {
+    double x[2][128];
+    int32_t round, i, k, first[25];
+    for (round = 0; round < 2; ++round) {
+        uint64_t seed = 75;
+        gproj_system *s = gprojt_nodes_and_groups(first, &seed);
+        gproj_term all[128];
+        for (k = 0; k < 8; ++k) gprojt_add_local(s, 0, first, 24, 5, &seed);
+        for (k = 0; k < 4; ++k) {
+            gproj_group group;
+            memset(&group, 0, sizeof group);
+            group.name = "off", group.global = k == 2, group.schedule = gproj_keep(1);
+            gproj_system_add_group(s, &group);
+        }
+        for (k = 0; k < first[24]; ++k) all[k] = gprojt_term(k, -1, 0.1);
+        gprojt_add_linear(s, 2, first[5], 1, 0, 0);
+        gprojt_add_joining(s, 3, first, 24, s->variable_count - 3, 1, &seed); /* to the last element with local unknowns */
+        gproj_system_add_row(s, 4, first[24], all, 0, 0);
+        gprojt_add_joining(s, 5, first, 24, -1, 1, &seed);
+        gproj_system_solve(s, 1, NULL);
+        GPROJT_CHECK(s->schur.on);
+        for (k = 0; k < first[24]; ++k) s->x[k] = 2;
+        for (i = 2; i < 6; ++i) {
+            double large[128];
+            gproj_system_set_schedule(s, i, gproj_keep(0));
+            for (k = 0; k < 128; ++k) large[k] = round * 1e308;
+            gproj_system_set_row(s, i, 0, large, round * 1e308);
+            GPROJT_CHECK((fabs(gproj_system_row_value(s, i, 0, NULL)) <= DBL_MAX) == (round == 0));
+        }
+        GPROJT_CHECK(gproj_system_solve(s, 5, NULL).outcome != GPROJ_FAILED && s->schur.on);
+        memcpy(x[round], s->x, (size_t)s->variable_count * sizeof(double));
+        if (round == 1) GPROJT_CHECK(!memcmp(x[0], x[1], (size_t)s->variable_count * sizeof(double)));
+        gproj_system_destroy(s);
+    }
+}
+
 /* Where an element has no more rows than local unknowns, or rows of faces are many after all, the matrix is the one for all
    variables. */
 GPROJT_TEST(not_taken_where_they_do_not_pay) {
@@ -1156,6 +1194,7 @@ int main(void) {
     GPROJT_RUN(steps_are_those_of_the_dense_matrix);
     GPROJT_RUN(steps_of_many_elements);
     GPROJT_RUN(elements_of_all_kinds);
+    GPROJT_RUN(groups_without_weight_may_overflow);
     GPROJT_RUN(elements_of_numbers_beyond_all_faces);
     GPROJT_RUN(not_taken_where_they_do_not_pay);
     GPROJT_RUN(large_fronts);
