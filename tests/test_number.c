@@ -1,4 +1,5 @@
-/* test_number.c - >>number: reading and writing decimal numbers, against the C library and on hard cases. */
+/* test_number.c - >>number: reading and writing decimal numbers, against the C library and on hard cases; >>stream: numbers in
+   bytes. */
 #define GPROJ_STATIC
 #include "gprojt.h"
 
@@ -372,6 +373,30 @@ GPROJT_TEST(the_first_error_stays) {
     GPROJT_CHECK(gproji_fail(NULL, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "nobody") == GPROJ_ERROR_FILE);
 }
 
+/* Writes a number between +-1e200 to a state, and reads it. Returns how many bytes it has; 0 if other bits come back. */
+static size_t gprojt_stored(double x) {
+    uint8_t bytes[16];
+    gproji_stream stream;
+    double back = 0.3;
+    size_t length;
+    memset(&stream, 0, sizeof stream);
+    gproji_pass_number(&stream, &x, -1e200, 1e200);
+    length = stream.at;
+    stream.mode = GPROJI_WRITE, stream.out = bytes, stream.size = length, stream.at = 0;
+    gproji_pass_number(&stream, &x, -1e200, 1e200);
+    stream.mode = GPROJI_READ, stream.in = bytes, stream.at = 0;
+    gproji_pass_number(&stream, &back, -1e200, 1e200);
+    return !stream.wrong && stream.at == length && gprojt_bits(back) == gprojt_bits(x) ? length : 0;
+}
+
+/* Eighths up to 127 have a byte in states, others nine: -0 as well, which has a sign. */
+GPROJT_TEST(bytes_of_numbers) {
+    static const double others[] = {-0.0, 0.0625, -0.0625, 0.1, 16, -16, 15.9375, 1.0 / 3, 1e200, -1e200, 1e-310};
+    int32_t k;
+    for (k = -127; k <= 127; ++k) GPROJT_CHECK(gprojt_stored(k / 8.0) == 1);
+    for (k = 0; k < (int32_t)(sizeof others / sizeof others[0]); ++k) GPROJT_CHECK(gprojt_stored(others[k]) == 9);
+}
+
 int main(void) {
     GPROJT_RUN(read_hard_cases);
     GPROJT_RUN(read_ties);
@@ -385,5 +410,6 @@ int main(void) {
     GPROJT_RUN(write_digits_like_printf);
     GPROJT_RUN(comma_locale);
     GPROJT_RUN(the_first_error_stays);
+    GPROJT_RUN(bytes_of_numbers);
     return gprojt_report();
 }

@@ -168,6 +168,30 @@ GPROJT_TEST(gradients_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* Rows of a group without weight take no part in steps, also if their values and gradients are infinite. */
+GPROJT_TEST(rows_without_weight_may_overflow) {
+    const gproj_term sum[2] = {{0, -1, 1}, {1, -1, 1}}, product = {0, 1, 1e308};
+    static const double x[2] = {10, 20};
+    int32_t global;
+    for (global = 0; global < 2; ++global) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_group group;
+        memset(&group, 0, sizeof group);
+        group.name = "without weight", group.global = global == 1;
+        gproj_system_add_variables(s, 2, 1, x);
+        gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+        gproj_system_add_group(s, &group);
+        gprojt_add_linear(s, 0, 0, 1, -7, 0);
+        gprojt_add_linear(s, 0, 1, 1, -8, 1);
+        gproj_system_add_row(s, 0, 2, sum, -15, 2);
+        gproj_system_add_row(s, 1, 1, &product, 0, 0);
+        GPROJT_CHECK(gproj_system_solve(s, 5, NULL).outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(gproj_system_values(s)[0], 7, 1e-9);
+        GPROJT_NEAR(gproj_system_values(s)[1], 8, 1e-9);
+        gproj_system_destroy(s);
+    }
+}
+
 /* -- refusals -- */
 
 typedef enum gprojt_call {
@@ -1177,6 +1201,7 @@ int main(void) {
     GPROJT_RUN(group_info);
     GPROJT_RUN(gradients_by_finite_differences);
     GPROJT_RUN(gradients_that_overflow);
+    GPROJT_RUN(rows_without_weight_may_overflow);
     GPROJT_RUN(refusals);
     GPROJT_RUN(refuses_nan_in_set_row);
     GPROJT_RUN(wrong_options_are_of_the_call);
