@@ -17493,15 +17493,13 @@ GPROJI_INTERNAL bool gproji_has_long_strip(int32_t flat, int32_t sides, int32_t 
 }
 
 /* Counts the edges inside the outermost strips, which cover the flat corners: each from one corner that is not flat to
-   the next. False with fewer than two such corners, or a side that is too short. */
+   the next. False with fewer than two such corners. Sides between two strips may have none left, or less. */
 GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int32_t *length, int32_t *inner) {
     int32_t i, to, sharp = 0;
     for (i = 0; i < sides; ++i) inner[i] = length[i], sharp += !gproji_is_flat(flat, sides, i);
     if (sharp < 2) return false;
     for (i = 0; i < sides; ++i)
         if (gproji_has_long_strip(flat, sides, i, &to)) --inner[(i + sides - 1) % sides], --inner[to % sides];
-    for (i = 0; i < sides; ++i)
-        if (inner[i] < 1) return false;
     return true;
 }
 

@@ -401,6 +401,28 @@ GPROJT_TEST(corners_that_are_flat) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Rectangles with corners amid their sides, which strips cover up to the other side: unit squares fill them. */
+GPROJT_TEST(strips_over_flat_corners_may_be_all) {
+    static const double one[] = {0, 0, 1, 0, 2, 0, 2, 1, 0, 1}, two[] = {0, 0, 1, 0, 2, 0, 2, 2, 1, 2, 0, 2},
+                        three[] = {0, 0, 1, 0, 2, 0, 3, 0, 3, 1, 0, 1};
+    static const int32_t edges[3][6] = {{1, 1, 1, 2, 1}, {1, 1, 2, 1, 1, 2}, {1, 1, 1, 1, 3, 1}}, faces[3] = {2, 4, 3};
+    int32_t i, k;
+    for (i = 0; i < 3; ++i) {
+        gprojt_curve c = gprojt_polygon(i == 0 ? 5 : 6, i == 0 ? one : i == 1 ? two : three);
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.marked = c.given = true, c.corner_count = c.count;
+        for (k = 0; k < c.count; ++k) c.corner[k] = k, c.edges[k] = edges[i][k];
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
+        GPROJT_CHECK(mesh->face_count == faces[i] && info.irregular_count == 0);
+        GPROJT_NEAR(info.min_angle, 90, 1e-9);
+        GPROJT_NEAR(info.max_angle, 90, 1e-9);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. */
 GPROJT_TEST(numbers_allow_for_strips) {
     gprojt_curve c = gprojt_half_disc();
@@ -1117,6 +1139,7 @@ int main(void) {
     GPROJT_RUN(regular_polygons);
     GPROJT_RUN(curves_without_corners);
     GPROJT_RUN(corners_that_are_flat);
+    GPROJT_RUN(strips_over_flat_corners_may_be_all);
     GPROJT_RUN(numbers_allow_for_strips);
     GPROJT_RUN(points_of_the_curve_are_kept);
     GPROJT_RUN(sides_are_divided_evenly);
