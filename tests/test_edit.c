@@ -566,6 +566,20 @@ GPROJT_TEST(split_and_collapse_is_nothing) {
     }
 }
 
+/* An edge that is split or collapsed at one of its ends has that end's coordinates there, bit for bit. */
+GPROJT_TEST(ends_of_edges_are_exact) {
+    static const double end[3] = {-0.0, 0.1, 1e300};
+    int32_t i;
+    for (i = 0; i < 4; ++i) {
+        gproj_edit *e = gprojt_edit_shape(0, 3);
+        int32_t edge = gproj_edit_edge(e, 5, 6), x;
+        memcpy(e->position + 3 * e->origin[2 * edge + i % 2], end, sizeof end);
+        x = i < 2 ? gproj_edit_split_edge(e, edge, i % 2, NULL) : gproj_edit_collapse_edge(e, edge, i % 2, NULL);
+        GPROJT_CHECK(x >= 0 && !memcmp(e->position + 3 * x, end, sizeof end));
+        gproj_edit_destroy(e);
+    }
+}
+
 /* Each edge of each shape, alone: a split leaves the first corners of faces where they were, and so does a collapse, where
    the vertex that is left stands for both ends; a collapsed edge is no more. */
 GPROJT_TEST(each_edge_by_itself) {
@@ -1355,6 +1369,7 @@ int main(void) {
     GPROJT_RUN(polylines_have_gaps_between_them);
     GPROJT_RUN(collapses_carry_numbers_on);
     GPROJT_RUN(split_and_collapse_is_nothing);
+    GPROJT_RUN(ends_of_edges_are_exact);
     GPROJT_RUN(each_edge_by_itself);
     GPROJT_RUN(marks_begin_anew);
     GPROJT_RUN(strips_come_and_go);

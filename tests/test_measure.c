@@ -220,6 +220,20 @@ GPROJT_TEST(planarity_of_each_face) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A corner next to a large flat face's mean tells nothing of the face's size. */
+GPROJT_TEST(corners_at_the_mean_of_large_faces) {
+    static const double spokes[8][2] = {{0, 0}, {0, 0}, {1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}};
+    double x[24], large = ldexp(1, 200), tiny = ldexp(1, -326); /* all sums are exact */
+    gproj_mesh *mesh;
+    int32_t i, k;
+    for (i = 0; i < 8; ++i)
+        for (k = 0; k < 3; ++k) x[3 * i + k] = large * (spokes[i][0] * (k == 0 ? 1 : 2) + spokes[i][1] * (k == 2 ? 1 : 3));
+    x[0] = tiny, x[3] = -tiny;
+    mesh = gprojt_polygon(8, x);
+    GPROJT_CHECK(gproj_measure_planarity(mesh, NULL, NULL) < 1e-14);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(areas_and_edges) {
     static const double x[18] = {0, 0, 5, 3, 0, 5, 3, 2, 5, 1, 2, 5, 1, 1, 5, 0, 1, 5}; /* an L: 3 x 2 less 1 x 1 */
     gproj_mesh *mesh = gprojt_polygon(6, x);
@@ -790,6 +804,7 @@ int main(void) {
     GPROJT_RUN(crossed_pentagons_are_damage);
     GPROJT_RUN(crossed_faces_as_in_measure);
     GPROJT_RUN(planarity_of_each_face);
+    GPROJT_RUN(corners_at_the_mean_of_large_faces);
     GPROJT_RUN(areas_and_edges);
     GPROJT_RUN(folded_edges);
     GPROJT_RUN(bow_ties);

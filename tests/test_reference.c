@@ -281,7 +281,12 @@ GPROJT_TEST(curves_from_meshes) {
     gproj_curve *curve;
     gproj_curve_hit hit;
     static const double below[3] = {0.5, -1, 0}, diagonal[3] = {0.4, 0.5, 0};
+    const double none[3] = {NAN, 0, 0};
     GPROJT_REQUIRE(mesh != NULL);
+    curve = gproj_curve_create(2, mesh->position, false, NULL, NULL);
+    GPROJT_REQUIRE(curve != NULL);
+    GPROJT_CHECK(gproj_curve_closest(curve, none).segment == 0); /* as good as any, but one that there is */
+    gproj_curve_destroy(curve);
     curve = gproj_curve_from_loop(mesh, 0, NULL, &error);
     GPROJT_REQUIRE(curve != NULL);
     hit = gproj_curve_closest(curve, below);

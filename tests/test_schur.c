@@ -547,11 +547,20 @@ GPROJT_TEST(not_taken_where_they_do_not_pay) {
     }
 }
 
+static int32_t gprojt_largest_front(const gproj_system *s) {
+    int32_t f, most = 0;
+    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
+        const gproji_front *front = &s->cholesky->symbolic.front[f];
+        most = gproji_max(most, front->width + front->below);
+    }
+    return most;
+}
+
 /* Rows that join blocks of 8 at random: the last fronts have hundreds of rows. */
 GPROJT_TEST(large_fronts) {
     uint64_t seed = 73;
     gproj_system *s = gproj_system_create(NULL);
-    int32_t k, j, f, most = 0;
+    int32_t k, j;
     gproj_system_add_variables(s, 800, 8, NULL);
     gprojt_add_group(s, "joining", GPROJ_CONSTRAINT, 1);
     for (k = 0; k < 640; ++k) {
@@ -562,12 +571,31 @@ GPROJT_TEST(large_fronts) {
         gproj_system_add_row(s, 0, 6, term, gprojt_uniform(&seed) - 0.5, k);
     }
     GPROJT_CHECK(gprojt_plain_step_error(s, 0.1) < 1e-9);
-    GPROJT_CHECK(s->schur.on);
-    for (f = 0; f < s->cholesky->symbolic.fronts; ++f) {
-        const gproji_front *front = &s->cholesky->symbolic.front[f];
-        most = gproji_max(most, front->width + front->below);
+    GPROJT_CHECK(s->schur.on && gprojt_largest_front(s) > 256);
+    gproj_system_destroy(s);
+}
+
+/* Rows at two of six points, and at two of 250 others, which have four rows each, as most vertices of quads. */
+GPROJT_TEST(large_fronts_at_points_with_four_rows) {
+    uint64_t seed = 76;
+    gproj_system *s = gproj_system_create(NULL);
+    int32_t place[1000], k, j;
+    for (k = 0; k < 1000; ++k) { /* shuffled */
+        j = gprojt_below(&seed, k + 1);
+        place[k] = place[j], place[j] = 6 + k / 4;
     }
-    GPROJT_CHECK(most > 256);
+    gproj_system_add_variables(s, 3 * 256, 3, NULL);
+    gprojt_add_group(s, "joining", GPROJ_CONSTRAINT, 1);
+    for (k = 0; k < 500; ++k) {
+        gproj_term term[6];
+        int32_t a = gprojt_below(&seed, 6), b = (a + 1 + gprojt_below(&seed, 5)) % 6;
+        for (j = 0; j < 6; ++j)
+            term[j] = gprojt_term(3 * (j == 0 ? a : j == 1 ? b : place[2 * k + j % 2]) + gprojt_below(&seed, 3), -1,
+                                  gprojt_uniform(&seed) - 0.5);
+        gproj_system_add_row(s, 0, 6, term, gprojt_uniform(&seed) - 0.5, k);
+    }
+    GPROJT_CHECK(gprojt_plain_step_error(s, 0.1) < 1e-9);
+    GPROJT_CHECK(s->schur.on && gprojt_largest_front(s) > 256);
     gproj_system_destroy(s);
 }
 
@@ -1198,6 +1226,7 @@ int main(void) {
     GPROJT_RUN(elements_of_numbers_beyond_all_faces);
     GPROJT_RUN(not_taken_where_they_do_not_pay);
     GPROJT_RUN(large_fronts);
+    GPROJT_RUN(large_fronts_at_points_with_four_rows);
     GPROJT_RUN(taken_where_only_constraints_act);
     GPROJT_RUN(nearest_solves_and_drags_do_without);
     GPROJT_RUN(idle_groups_change_nothing);
