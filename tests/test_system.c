@@ -1091,25 +1091,35 @@ GPROJT_TEST(placed_rows) {
 }
 
 /* Rows of two variables that share their terms still do when they are sorted by the order of elimination: those that are sorted
-   already have these terms, all others the same copy. */
+   already have these terms, all others the same copy. Neither depends on an order before: rows with one variable and all others
+   make that the last one. */
 GPROJT_TEST(sorted_rows_share_terms) {
     static const gproj_term two[2] = {{0, -1, -1}, {1, -1, 1}};
-    gproj_system *s = gproj_system_create(NULL);
-    int32_t i, way;
-    gproj_system_add_variables(s, 20, 1, NULL);
-    gprojt_add_group(s, "chain", GPROJ_CONSTRAINT, 1);
-    gprojt_add_group(s, "first", GPROJ_CONSTRAINT, 1);
-    gprojt_add_linear(s, 1, 0, 1, -5, 0);
-    for (i = 0; i < 19; ++i)
-        for (way = 0; way < 2; ++way) { /* each difference from both ends */
-            int32_t *local = gproji_add_placed_rows(s, 0, 0, 1, 2, two, 2, way ? 1 : -1, i);
-            GPROJT_REQUIRE(local);
-            local[way] = i, local[1 - way] = i + 1;
+    int32_t hub, i, way;
+    for (hub = 0; hub < 20; ++hub) {
+        gproj_system *s = gproj_system_create(NULL);
+        gproj_system_add_variables(s, 20, 1, NULL);
+        gprojt_add_group(s, "chain", GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "others", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 1, 0, 1, -5, 0);
+        for (i = 0; i < 19; ++i)
+            for (way = 0; way < 2; ++way) { /* each difference from both ends */
+                int32_t *local = gproji_add_placed_rows(s, 0, 0, 1, 2, two, 2, way ? 1 : -1, i);
+                GPROJT_REQUIRE(local);
+                local[way] = i, local[1 - way] = i + 1;
+            }
+        for (way = 0; way < 2; ++way) {
+            for (i = 0; i < 20; ++i) gproj_system_values(s)[i] = 0;
+            GPROJT_CHECK(gproj_system_solve(s, 20, NULL).outcome == GPROJ_CONVERGED && !s->schur.on);
+            for (i = 0; i < 20; ++i) GPROJT_NEAR(gproj_system_values(s)[i], 5 + i, 1e-9);
+            GPROJT_CHECK(s->group[0].term_count == 4);
+            for (i = 0; way == 0 && i < 20; ++i) {
+                const gproj_term term[2] = {{hub, -1, 1}, {i, -1, -1}};
+                gproj_system_add_row(s, 1, 2, term, i - hub, i);
+            }
         }
-    GPROJT_CHECK(gproj_system_solve(s, 20, NULL).outcome == GPROJ_CONVERGED && !s->schur.on);
-    for (i = 0; i < 20; ++i) GPROJT_NEAR(gproj_system_values(s)[i], 5 + i, 1e-9);
-    GPROJT_CHECK(s->group[0].term_count == 4);
-    gproj_system_destroy(s);
+        gproj_system_destroy(s);
+    }
 }
 
 /* -- memory -- */
