@@ -855,6 +855,34 @@ GPROJT_TEST(dissection_leaves_out) {
     free(order), graph_free(&g);
 }
 
+/* A grid's rim are its 4 (n - 1) nodes on the boundary; closed meshes have none, also if there is a light node in each edge. */
+GPROJT_TEST(rims_of_meshes) {
+    enum {
+        N = 30
+    };
+    graph g = quads(N, N, false, false);
+    int32_t x, y, k, v = N * N;
+    GPROJT_NEAR(gproji_rim(&g.view), 16.0 * (N - 1) * (N - 1) / v, 1e-12);
+    graph_free(&g);
+    g = quads(N, N, true, true);
+    GPROJT_CHECK(gproji_rim(&g.view) == 0);
+    graph_free(&g);
+    g = graph_of(3 * v);
+    add_quads(&g, N, N, true, true);
+    for (y = 0; y < N; ++y)
+        for (x = 0; x < N; ++x)
+            for (k = 0; k < 2; ++k) {
+                int32_t edge[3] = {y * N + x, 0, v + 2 * (y * N + x) + k};
+                edge[1] = k ? (y + 1) % N * N + x : y * N + (x + 1) % N;
+                graph_add(&g, 3, edge);
+            }
+    graph_finish(&g, 3);
+    for (k = v; k < g.nodes; ++k) g.weight[k] = 1;
+    graph_weigh(&g);
+    GPROJT_CHECK(gproji_rim(&g.view) == 0);
+    graph_free(&g);
+}
+
 /* -- memory, determinism -- */
 
 static bool dissect_with(const gproj_host *host, void *user) {
@@ -960,6 +988,7 @@ int main(void) {
     GPROJT_RUN(dissection_estimates);
     GPROJT_RUN(dissection_finds_smallest_separators);
     GPROJT_RUN(dissection_leaves_out);
+    GPROJT_RUN(rims_of_meshes);
     GPROJT_RUN(ordering_every_allocation_fails);
     GPROJT_RUN(ordering_is_deterministic);
     return gprojt_report();
