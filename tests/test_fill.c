@@ -252,6 +252,37 @@ GPROJT_TEST(random_curves_with_many_corners) {
     GPROJT_CHECK(gprojt_fill_random(40, 7, 12, 3, 5) <= 4);
 }
 
+/* A curve that is turned in the plane is filled by the same mesh, turned. */
+GPROJT_TEST(fillings_turn_with_their_curves) {
+    uint64_t state = 5;
+    int32_t filled = 0, tries, i;
+    for (tries = 0; tries < 60; ++tries) {
+        gprojt_curve c = gprojt_random_curve(&state, 3 + gprojt_below(&state, 6), tries % 3), turned;
+        double sine = sin(0.7 + tries), cosine = cos(0.7 + tries), off = 0;
+        gproj_mesh *mesh, *other;
+        c.options.edge_length = 0.7 + 3 * gprojt_uniform(&state);
+        turned = c;
+        for (i = 0; i < c.count; ++i) {
+            turned.point[3 * i] = cosine * c.point[3 * i] - sine * c.point[3 * i + 1];
+            turned.point[3 * i + 1] = sine * c.point[3 * i] + cosine * c.point[3 * i + 1];
+        }
+        mesh = gprojt_fill(&c, NULL, NULL), other = gprojt_fill(&turned, NULL, NULL);
+        GPROJT_REQUIRE((mesh != NULL) == (other != NULL));
+        if (!mesh) continue;
+        GPROJT_REQUIRE(mesh->vertex_count == other->vertex_count);
+        for (i = 0; i < mesh->vertex_count; ++i) {
+            const double *p = mesh->position + 3 * i;
+            double q[3];
+            q[0] = cosine * p[0] - sine * p[1], q[1] = sine * p[0] + cosine * p[1], q[2] = p[2];
+            off = fmax(off, gprojt_far(q, other->position + 3 * i));
+        }
+        GPROJT_NEAR(off, 0, 1e-9);
+        ++filled;
+        gproj_mesh_destroy(mesh), gproj_mesh_destroy(other);
+    }
+    GPROJT_CHECK(filled > 30);
+}
+
 /* -- any numbers of edges -- */
 
 GPROJT_TEST(any_numbers_of_edges) {
@@ -1133,6 +1164,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 int main(void) {
     GPROJT_RUN(random_curves);
     GPROJT_RUN(random_curves_with_many_corners);
+    GPROJT_RUN(fillings_turn_with_their_curves);
     GPROJT_RUN(any_numbers_of_edges);
     GPROJT_RUN(odd_numbers_of_edges);
     GPROJT_RUN(right_angles_give_grids);

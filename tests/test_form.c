@@ -1504,6 +1504,31 @@ GPROJT_TEST(held_corners_are_counted) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A vertex is held if all of its coordinates are: free along any axis, it lets the face become flat. */
+GPROJT_TEST(vertices_held_along_two_axes_are_free) {
+    static const double place[4][3] = {{0, 0, 0}, {1, 0.2, 0.5}, {1.3, 1.1, 1.4}, {0.1, 0.9, 0.3}};
+    static const int32_t fixed[3] = {0, 1, 2};
+    int32_t k, axis, iterations;
+    for (axis = 0; axis < 3; ++axis)
+        for (iterations = 1; iterations <= 30; iterations += 29) {
+            gproj_mesh *mesh;
+            gproj_form *form = gprojt_one_face(4, place, 0.1, &mesh);
+            gproj_result result;
+            int32_t rail;
+            gproj_add_fixed(form, 3, fixed, 1);
+            rail = gproj_add_rows(form, "rail", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+            for (k = 0; k < 3; ++k) {
+                gproj_term term = gprojt_term(9 + k, -1, 1);
+                if (k != axis) gproj_form_add_row(form, rail, 1, &term, -mesh->position[9 + k], 3);
+            }
+            result = gproj_solve(form, iterations, NULL);
+            GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == (iterations > 1));
+            GPROJT_CHECK(!strstr(result.message, " are held"));
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
 /* Faces with very many corners are looked at as well: the first 64 of those that are held make a plane, others may be off
    it. */
 GPROJT_TEST(many_held_corners) {
@@ -3007,6 +3032,7 @@ int main(void) {
     GPROJT_RUN(refused_targets_name_no_vertex);
     GPROJT_RUN(triangles_held_are_not_named);
     GPROJT_RUN(held_corners_are_counted);
+    GPROJT_RUN(vertices_held_along_two_axes_are_free);
     GPROJT_RUN(many_held_corners);
     GPROJT_RUN(planes_are_looked_at_in_turn);
     GPROJT_RUN(rows_that_hold);
