@@ -40,6 +40,7 @@ GPROJT_TEST(frames_are_one_solve) {
             GPROJT_CHECK(!gproj_solve_is_on(form));
             GPROJT_CHECK(gproj_solve_begin(form, GPROJT_ITERATIONS, &options, NULL) && gproj_solve_is_on(form));
             while (gproj_solve_is_on(form) && frames++ < 100) {
+                if (frames % 3 == 0) GPROJT_CHECK(gproj_solve_memory(form, NULL) > 0); /* asking changes nothing */
                 result = gproj_solve_advance(form, 0);
                 GPROJT_CHECK(!gproj_solve_is_on(form) || result.outcome == GPROJ_TIME_OUT);
                 GPROJT_CHECK(!gproj_solve_is_on(form) || result.iterations == frames);
