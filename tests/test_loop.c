@@ -1318,6 +1318,24 @@ GPROJT_TEST(no_stiffness_at_the_end) {
     }
 }
 
+/* Steps that overflow are tried again with a larger eps: stiffness is no help in directions without it. */
+GPROJT_TEST(no_stiffness_where_steps_overflow) {
+    static const double x[2] = {1, 2};
+    gproj_system *s = gprojt_system(NULL, 2, 1, x);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.epsilon = 1e-150;
+    gprojt_add_group(s, "faint", GPROJ_CONSTRAINT, 1);
+    gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
+    gprojt_add_linear(s, 0, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
+    gprojt_add_linear(s, 1, 1, 1, 0, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && s->stiffness == 1);
+    GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == 2);
+    gproj_system_destroy(s);
+}
+
 /* Safeguards give way before a solve ends for lack of progress: twice, and then their weight is gone. */
 GPROJT_TEST(safeguards_give_way) {
     int32_t safe, last[2];
@@ -1662,6 +1680,7 @@ int main(void) {
     GPROJT_RUN(stiffness_of_the_next_step);
     GPROJT_RUN(metrics_rest_at_the_end);
     GPROJT_RUN(no_stiffness_at_the_end);
+    GPROJT_RUN(no_stiffness_where_steps_overflow);
     GPROJT_RUN(safeguards_give_way);
     GPROJT_RUN(rounding_chooses_no_safeguards);
     GPROJT_RUN(guards_wake_without_memory);
