@@ -94,8 +94,9 @@
      rows, eps chooses the shortest; unknowns that no row mentions stay put.
      4. Quadratic at the end. A full step leaves exactly 1/2 dx'H dx in each quadratic row, besides a share of about
      (eps/w)^2 in phi. Near a solution |dx| is proportional to the residual, hence 1e-2 becomes 1e-4, 1e-8, 1e-16. To
-     keep out of the way, eps follows the residual from 1e-3 down to 1e-5. Far from a solution a full step may do harm:
-     the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows (>>loop).
+     keep out of the way, eps follows the residual from 1e-3 to 1e-5 or less. Far from a solution a full step may do
+     harm: the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows
+     (>>loop).
      5. Weights against eps. A weight multiplies the row and enters squared: with w = 1 and eps = 1e-3 a constraint is a
      million times stronger than the pull towards staying put, with w = eps it goes half way only. Constraints that
      agree hold at any weight well above eps. Ratios matter if rows compete: constraints at 1, wishes at 0.01 to 0.3.
@@ -118,7 +119,7 @@
 
      Projection ends at some solution near its path, not at the best. gproj_solve_options.nearest goes on to a local
      minimum of the wishes' sum E, such as closeness, among all x that satisfy the constraints: grad E + sum y g = 0,
-     with multipliers y that hold the constraints against wishes which need not fade. Allow 30 iterations.
+     with multipliers y that hold the constraints against wishes which need not fade. Allow 60 iterations.
 
    FROM THE PAPER TO THE CODE   Each line: section or equation, function, program in examples/, and GPROJT_TEST(name) in
    the file tests/test_....c. A dash: no program.
@@ -239,8 +240,8 @@
 
    MEMORY   Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
      back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
-     nothing, unless during a solve a group first gets a weight or the guard first acts (then there is one analysis
-     more), or a callback sets coefficients of planarity, fairness or their like (whose rows share them before). Every
+     nothing, unless during a solve a group first gets a weight or safeguards first act (then the system is analysed
+     anew), or a callback sets coefficients of planarity, fairness or their like (whose rows share them before). Every
      allocation may fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a
      mesh, a curve, a stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and
      surfaces added to it, a drag to its form.
@@ -639,7 +640,7 @@ typedef struct gproj_group_info {
 } gproj_group_info;
 
 typedef enum gproj_phase {
-    GPROJ_PHASE_ANALYSE,  /* pattern, ordering, symbolic factorisation: once */
+    GPROJ_PHASE_ANALYSE,  /* pattern, ordering, symbolic factorisation: when rows change */
     GPROJ_PHASE_REFRESH,  /* refresh callbacks, evaluation of rows */
     GPROJ_PHASE_ASSEMBLE, /* right-hand sides */
     GPROJ_PHASE_FACTOR,   /* the matrix, front by front, the factor, and half of the solution */
@@ -701,7 +702,8 @@ typedef struct gproj_solve_options {
     bool nearest;
 } gproj_solve_options;
 
-/* Damage to a mesh, compared with the original. Constraints may hold exactly on a mesh that cannot be built. */
+/* Damage to a mesh, compared with the original, or with the original scaled by the least growth of an edge if all have
+   grown. Constraints may hold exactly on a mesh that cannot be built. */
 typedef struct gproj_spoiled {
     int32_t turned;          /* faces turned over: vectorial area against the original's */
     int32_t crossed;         /* faces that cross themselves (bow-ties), and did not */
@@ -1064,7 +1066,7 @@ typedef struct gproj_stencil {
 } gproj_stencil;
 
 /* Subdivides a mesh. `options` may be NULL: one level by Catmull and Clark's scheme. `stencil` may be NULL, else it
-   receives the stencil that leads to the new mesh, to be destroyed by the caller; NULL on failure. Applied to the
+   receives the stencil that leads to the new mesh; the caller destroys both; NULL on failure. Applied to the
    coarse positions it gives the new ones, to the last bit for one level, up to rounding for several. For handles on
    several levels take the meshes with 1, 2, ... levels, and for each the stencil from the level before, with
    stencil_level. Refuses: GPROJ_ERROR_INDEX and _NUMBER for edges, vertices and sharpness out of range; for Loop's
@@ -1148,7 +1150,7 @@ typedef struct gproj_measures {
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
     int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal */
     int32_t degenerate_faces;            /* vectorial area below 1e-12 squared mean edges */
-    int32_t collapsed_edges;             /* not longer than 1e-6 mean edges */
+    int32_t collapsed_edges;             /* not longer than 1e-6 mean edges; gproj_spoiled counts more */
     /* Sum over interior vertices: area of the vertex star's Gauss image, the spherical polygon of the face normals, as
        a sum of triangle areas about their mean. */
     double gauss_variation;
@@ -1205,7 +1207,7 @@ typedef struct gproj_offset_measures {
     int32_t reversed_edges; /* they run against the mesh's edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
-/* Distances and parallel_max are infinite if a mesh is NULL, or if the two do not have the same faces. */
+/* All but reversed_edges is infinite if a mesh is NULL, or if the two do not have the same faces. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1495,9 +1497,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
      limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
-   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again, first guided by closeness
-     to where it began with weights 0.3 * 0.7^n for 20 iterations, then with stiffer steps: at most three attempts with
-     `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_solve_begin).
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again, first guided by
+     closeness to where it began with weights 0.3 * 0.7^n for 20 iterations, then with stiffer steps: at most three
+     attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -2133,7 +2135,7 @@ GPROJI_INTERNAL uint64_t gproji_read_long(const uint8_t *digit, int32_t count, i
     exponent = power;
     gproji_big_set(&b, 1);
     gproji_big_multiply_power5(power < 0 ? &b : &a, power < 0 ? -power : power);
-    /* 2. Scale by powers of two: a and b get the same length, a whole number of limbs, and 1/2 <= a / b < 1. */
+    /* 2. Scale by powers of two: a and b get the same length, a whole number of limbs, and 1/2 < a / b < 2. */
     bits_a = gproji_big_bits(&a);
     bits_b = gproji_big_bits(&b);
     i = (gproji_max(bits_a, bits_b) + 31) / 32 * 32;
@@ -3382,7 +3384,7 @@ GPROJI_INLINE int32_t gproji_shape_first(gproji_shape shape, int32_t at) {
     return shape.last < 0 ? at & -GPROJI_BLOCK : gproji_min(at & -GPROJI_CHUNK, shape.last);
 }
 
-/* The stride in that block; the number of columns, from that pivot's on, before it shrinks. */
+/* The stride in that block, and the number of columns, from that pivot's on, before it shrinks: in chunks, never. */
 GPROJI_INLINE int32_t gproji_shape_stride(gproji_shape shape, int32_t at) {
     return shape.stride - gproji_shape_first(shape, at);
 }
@@ -5907,7 +5909,7 @@ GPROJI_INTERNAL bool gproji_analyse(gproji_pool *keep, const gproji_graph *graph
    A matrix in compressed columns is compressed further: columns with the same entries become one node. The system
    section brings its own nodes, and adds its values to each front on request (gproji_load).
 
-   Invariants: the numerical part takes its memory at once, before the first factorisation; the analysis has fixed each
+   Invariants: the numerical part takes its memory before a factorisation, not within; the analysis has fixed each
    update matrix's place in it, so tasks share nothing but read-only data. */
 enum {
     GPROJI_SOLVE_BATCH = 4,  /* most right-hand sides solved together */
@@ -7746,7 +7748,7 @@ typedef struct gproji_schur {
     int32_t elements;
     gproji_row_name *row; /* rows by elements, then those with a single node by nodes */
     int64_t *row_start;   /* elements + 1: rows in `row` */
-    int64_t *own_start;   /* nodes + 1: rows in `row` */
+    int64_t *own_start;   /* nodes + 1: rows of one node in `row` */
     int32_t *auxiliary;   /* elements: the node with local unknowns; -1: none */
     uint8_t *zero_sum;    /* elements: row gradients add up to nothing at the nodes joined */
     int32_t *first;       /* elements + 1: the first multiplier */
@@ -8252,12 +8254,13 @@ GPROJI_INLINE gproji_row *gproji_start_row(gproji_group *g, uint32_t term, int32
     return row;
 }
 
-/* Ends a row whose terms and locals are written. Returns the number. */
+/* Ends a row whose terms are written, and whose locals may be written later. Returns the number. */
 GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_row *row, int32_t locals) {
     row->wide = g->global || locals > GPROJI_WIDE_ROW;
     g->has_wide = g->has_wide || row->wide;
     s->wide_count += row->wide;
-    if (row->term == g->term_count) g->sources = g->term_count += row->terms;
+    if (row->term == g->term_count) /* it does not share another row's terms */
+        g->sources = g->term_count += row->terms;
     row[1].local = row->local + (uint32_t)locals;
     return g->row_count++;
 }
@@ -8335,11 +8338,10 @@ GPROJI_INTERNAL int32_t gproji_add_safeguard_row(gproj_system *s, int32_t group,
     return row;
 }
 
-/* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not global.
-   Terms name locals by number. The builder writes the variables to the address returned unless that is NULL, row after
-   row: different ones, in the order in which terms name them; a block with several in one row must be joined already.
-   (Copied from an array they would be read again right after they were written.) like: a row in the group whose terms
-   are shared if they are equal; -1: none. */
+/* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
+   global. Terms name locals by number. The builder writes the variables to the address returned unless that is NULL,
+   row after row: different ones, in the order in which terms name them; a block with several in one row must be
+   joined already. like: a row in the group whose terms are shared if they are equal; -1: none. */
 GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
                                                 int32_t count, const gproj_term *terms, int32_t locals, double constant,
                                                 int32_t element) {
@@ -8541,7 +8543,7 @@ GPROJ_API double gproj_system_row_value(const gproj_system *s, int32_t group, in
 
 /* -- compilation -- */
 
-/* Gives back spare room in a growing array. Returns the array; without memory that is the old one. */
+/* Gives back spare room in a growing array. Returns the array; without memory the old one, with *capacity as it was. */
 GPROJI_INTERNAL void *gproji_trim(gproji_heap *heap, void *block, size_t *capacity, size_t count, size_t size) {
     void *moved = block && *capacity != count ? gproji_retake(heap, block, *capacity, count, size) : NULL;
     if (!moved) return block;
@@ -8549,7 +8551,7 @@ GPROJI_INTERNAL void *gproji_trim(gproji_heap *heap, void *block, size_t *capaci
     return moved;
 }
 
-/* Step 1: the variables of a joined block are a node. */
+/* Step 1: the variables of a joined block are a node, every other variable is one. False without memory. */
 GPROJI_INTERNAL bool gproji_compile_variables(gproj_system *s) {
     gproji_nodes *nodes = &s->nodes;
     int32_t n = s->variable_count, i, v;
@@ -8898,7 +8900,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
 /* The rounding in safeguards that ask for what there is: it must not choose those that act. */
 static const double gproji_safeguard_noise = 1e-9;
 
-/* Evaluates phi and gradients of a group's rows in one task. Rows without weight get zeros; a contiguous linear row
+/* A task: evaluates phi and gradients of some rows of a group. Rows without weight get zeros; a contiguous linear row
    keeps its gradient. */
 GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
     gproj_system *s = (gproj_system *)data;
@@ -10307,9 +10309,10 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
    error, parallel, vector, cholesky, stream, system, schur.
 
-   Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual, so
-   that the first steps are calm and the last ones quadratic; it stays above 1e-5, because a smaller one lets rounding
-   grow along the directions that the constraints leave free. The rows are quadratic, so along a step dx the merit
+   Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual,
+   so that the first steps are calm and the last ones quadratic; it stays above 1e-5 unless steps fall short, because a
+   smaller one lets rounding grow along the directions that the constraints leave free. The rows are quadratic, so
+   along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
    is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx.
    Products are small if dx is, so rounding of phi never makes a short step look like one that raises M. A step that
@@ -10329,12 +10332,12 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    displacement along edges) add
        k^2 sum (w g'dx)^2,    k the stiffness
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
-   so they bias nothing and are no part of merit and residual. The stiffness k is 1 at the beginning and follows the
-   agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails or
-   falls short. Once it is small near a solution the metric rests and the last steps are Newton's. If such a step fails
-   the metric comes back and rests again only when a step lowers the merit tenfold; until then k may fall below its
-   least, with which steps would be too short and creep. A metric that is a brake (in a form: changes of forces) acts
-   with k (k - 1) instead, so only for k > 1, when steps fail.
+   so they bias nothing and are no part of merit and residual. The stiffness k is 1 or 10 at the beginning and follows
+   the agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails
+   or falls short. Once it is small near a solution the metric rests and the last steps are Newton's. If such a step
+   fails the metric comes back and rests again only when a step lowers the merit tenfold; until then k may fall below
+   its least, with which steps would be too short and creep. A metric that is a brake (in a form: changes of forces)
+   acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
    are, while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The
@@ -10362,7 +10365,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
        brake       form, in smooth solves of forces    with k (k - 1) for k > 1, after steps have failed    no
    Drags take all but wishes, guard and metrics (gproji_see_hard). */
 
-static const double gproji_epsilon_min = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
+static const double gproji_epsilon_usual = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
 static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by this part of the largest residual: they act on the next one then. */
@@ -10378,18 +10381,18 @@ static const double gproji_stiffness_finest = 1e-6; /* after the metric has rest
 static const double gproji_stiffness_left = 0.1;    /* while steps leave more than this part of the merit */
 static const double gproji_stiffness_ends = 1e-7;   /* residual below which stiffer steps are no help */
 static const double gproji_brake_most = 9;          /* of the stiffness above 1, for brakes */
-static const double gproji_settled = 1e-3;          /* residual below which refreshes may settle */
+static const double gproji_calm = 1e-3;             /* residual below which wishes count as faded */
 static const double gproji_shortest = 0.125;        /* part of a step whose local unknowns are settled */
 /* A residual below the first that keeps more than the second part of itself from one look to the next creeps. */
 static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
 enum {
-    GPROJI_ATTEMPTS = 8,         /* steps with different eps in one iteration */
+    GPROJI_TRIALS = 8,           /* of one iteration, with different eps or stiffness */
     GPROJI_BOUND_ROUNDS = 3,     /* how often each is found again with other active bounds */
     GPROJI_PATIENCE = 5,         /* iterations without progress before the loop stops, */
     GPROJI_PATIENCE_STIFF = 12,  /* and with a metric */
     GPROJI_ACTIVATIONS = 4,      /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,       /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_MOST = 50,       /* safeguards act in half of more iterations than this, and in no more */
+    GPROJI_SAFE_MOST = 50,       /* with a higher limit safeguards act in half of the iterations, at most so many */
     GPROJI_SAFE_LAST = 30,       /* iterations after that in which they ask for the least */
     GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
     GPROJI_WARY = 4,             /* iterations with a cautious stiffness after a step has failed or was short */
@@ -10436,8 +10439,8 @@ typedef struct gproji_watch {
 typedef struct gproji_trust {
     double agreement; /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     double left;      /* the part of the merit that the last step has left */
-    bool factored;    /* the last attempt found a step, whether good or not */
-    bool failed;      /* an attempt of this iteration was not good */
+    bool factored;    /* the last trial found a step, whether good or not */
+    bool failed;      /* a trial of this iteration was not good */
     bool restless;    /* a step has failed while the metric rested */
     int32_t wary;     /* iterations in which the stiffness does not fall fast */
 } gproji_trust;
@@ -11020,11 +11023,11 @@ GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     }
 }
 
-/* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found again.
-   A row should act if the step would violate it by more than a part of the residual, in itself and linearised (the
-   tangent of a convex row alone would say so too early); a row that acts already goes on until it holds the step back.
-   Rows of the guard are looked at in round 0 only, by their true value, and stay on. If only rows of lazy groups have
-   changed, a step that lowers the merit to a tenth is kept. */
+/* Switches rows of bounds on and off by the full step that was found, x being at its end; true: it must be found
+   again. A row should act if the step would violate it by more than a part of the residual, in itself and linearised
+   (the tangent of a convex row alone would say so too early); a row that acts already goes on while the step would
+   violate it, linearised. Rows of the guard are looked at in round 0 only, by their true value, and stay on. If only
+   rows of lazy groups have changed, a step that lowers the merit to a tenth is kept. */
 GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round) {
     const gproj_system *s = loop->system;
     double slack = gproji_fmax(loop->tolerance, gproji_bound_slack * loop->standing.residual);
@@ -11178,18 +11181,18 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     }
 }
 
-/* One iteration from a linearised x to the next. False when no attempt was good; x is then as before. */
+/* One iteration from a linearised x to the next. False when no trial was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
     double epsilon = loop->options.epsilon;
-    int32_t attempt;
+    int32_t trial;
     if (!(epsilon > 0)) { /* follows the norm of all phi, which does not depend on the directions of the axes */
         epsilon = 0.3 * sqrt(gproji_fmax(0, loop->standing.merit - loop->standing.energy));
         epsilon = gproji_fmin(gproji_fmax(epsilon, loop->epsilon_least), gproji_epsilon_max);
     }
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.factorisations = 0;
-    for (attempt = 0; attempt < GPROJI_ATTEMPTS && s->error.code == GPROJ_OK; ++attempt) {
+    for (trial = 0; trial < GPROJI_TRIALS && s->error.code == GPROJ_OK; ++trial) {
         gproji_standing before = loop->standing;
         bool stepped;
         /* 1. The full step, and the good part of it: x is the new one, or the old one if there is none. */
@@ -11351,7 +11354,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         gproji_place_woken(loop, gproji_wake_guard(s));
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_set_weights(loop, n)) gproji_linearise(loop);
-        guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_settled);
+        guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_calm);
         s->progress.settling = n <= half && guided ? 0 : s->progress.settling + 1;
         loop->standing = gproji_take_standing(s);
         /* 2. The step, unless all is done. */
@@ -11404,11 +11407,11 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
 
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
-/* Writes the obstacle of constraints that do not hold, and advice. */
+/* Writes why the rows of the worst group, g, do not hold, and advice. */
 GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
-    double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_min;
+    double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_usual;
     double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
     int32_t second = -1, wish = -1, i, k;
     bool guided, balanced;
@@ -11540,10 +11543,10 @@ enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
     GPROJI_NEAREST_RESTORE = 5, /* iterations at the end, a tenth of many, up to */
     GPROJI_NEAREST_RESTORE_MOST = 8,
-    GPROJI_NEAREST_ATTEMPTS = 6, /* factorisations with curvature, before those without */
-    GPROJI_NEAREST_ROUNDS = 12,  /* multipliers with one factorisation */
-    GPROJI_NEAREST_HALVES = 5,   /* lengths of a step */
-    GPROJI_NEAREST_RETRACT = 3   /* steps back to the constraints */
+    GPROJI_CURVED_TRIALS = 6,   /* factorisations with curvature, before those without */
+    GPROJI_NEAREST_ROUNDS = 12, /* multipliers with one factorisation */
+    GPROJI_NEAREST_HALVES = 5,  /* lengths of a step */
+    GPROJI_NEAREST_RETRACT = 3  /* steps back to the constraints */
 };
 
 /* The weights of slides: wishes keep theirs, whatever their schedules say, scaled so that the largest is `scale`. */
@@ -11751,13 +11754,13 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     return false;
 }
 
-/* One slide from a linearised x. False when no attempt was good; x is then as before. */
+/* One slide from a linearised x. False when no trial was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     double shift = curved ? loop->shift : 0;
     gproji_pass_over(s, 0, gproji_save_task);
-    for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_NEAREST_ATTEMPTS + 4;) {
+    for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_CURVED_TRIALS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
             loop->minimum = curved && shift <= gproji_nearest_flat;
@@ -11772,7 +11775,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_lap(loop, GPROJ_PHASE_SOLVE);
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
-        if (curved && loop->iteration.factorisations == GPROJI_NEAREST_ATTEMPTS) {
+        if (curved && loop->iteration.factorisations == GPROJI_CURVED_TRIALS) {
             curved = false;
             shift = 0;
         }
@@ -11893,7 +11896,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     if (loop->options.time_budget > DBL_MAX) loop->options.time_budget = 0;
     loop->iterations = iterations;
     loop->time.frame = -1;
-    loop->epsilon_least = gproji_epsilon_min;
+    loop->epsilon_least = gproji_epsilon_usual;
     loop->watch.yield_at = INT32_MAX;
     if (iterations > GPROJI_SAFE_MOST)
         loop->watch.yield_at = gproji_min(iterations / 2 + iterations % 2, GPROJI_SAFE_MOST);
@@ -15427,7 +15430,8 @@ GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_ed
                        noun[kind], number, count - 1) == GPROJ_OK;
 }
 
-/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed. -1 without an object. */
+/* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed or is none, or if t is not
+   from 0 to 1. -1 without an object. */
 GPROJI_INTERNAL int32_t gproji_edit_given_edge(gproji_edit_object *object, int32_t edge, double t, gproj_error *error) {
     int32_t root;
     if (!object || !gproji_edit_has(object, GPROJI_EDIT_EDGE, edge, error)) return -1;
@@ -20928,9 +20932,10 @@ GPROJ_API gproj_code gproj_form_residuals(const gproj_form *form, int32_t group,
    there, which is quadratic. Based on Tang et al. (2014), sections 3.1 and 3.5; for force densities on Schek, The force
    density method for form finding and computation of general networks (1974).
 
-   Edge e has the variable force[e] = w_e load_scale / scale; rows are in internal lengths, and loads times load_scale,
-   chosen at the start so that these variables have mean square 1. Weights depend on the shape. That on vertex i is
-   linearised in the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], by terms at the end of the z row. */
+   Edge e has the variable x[force[e]] = w_e load_scale / scale; rows are in internal lengths, and loads times
+   load_scale, chosen at the start so that these variables have mean square 1. Dead loads depend on the shape. That
+   on vertex i is linearised in the vertices load_vertex[load_start[i] .. load_start[i + 1] - 1], by terms at the end
+   of the z row. */
 
 enum {
     GPROJI_AXES = 7 /* x, y and z */
@@ -21309,7 +21314,7 @@ GPROJI_INTERNAL gproj_code gproji_begin_question(const gproj_form *form, const c
     return gproji_form_ready(form) ? GPROJ_OK : gproji_pass_on(error, gproj_form_error(form));
 }
 
-/* Refuses a call that needs equilibrium before. */
+/* Refuses a call if the form has no equilibrium. */
 GPROJI_INTERNAL bool gproji_has_statics(gproj_form *form, const char *name) {
     return gproji_form_ready(form) && gproji_need_statics(form, name, &form->error) == GPROJ_OK;
 }
@@ -22116,7 +22121,7 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    constraints creep all the same, every row asks for its floor only; far from the end that would be too early, for
    shapes lose more there than they must. If no step is found even so, the rows ask for the least, faces that are not
    turned over nor so concave that their sides cross, before they are let go. Of the 36 twisted patches in test_smooth
-   35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_bend_least = -2.
+   35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_dihedral_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve.
@@ -22131,12 +22136,13 @@ static const double gproji_corner_upright = 0.1; /* the same as seen along the f
 static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
 static const double gproji_corner_last = -0.2, gproji_corner_upright_last = 0.01;  /* asked of all at last */
-static const double gproji_corner_kept = 0.25; /* a step that leaves less of a small corner is refused */
-static const double gproji_corner_none = 1e-3; /* of corners and edges that are let go */
-static const double gproji_edge_floor = 0.15;  /* asked of shorter edges */
-static const double gproji_edge_kept = 0.5;    /* a step that leaves less of a short edge is refused */
-static const double gproji_bend_least = -0.1;  /* cosine of a bend below which it gets a row, */
-static const double gproji_bend_wanted = 0, gproji_bend_floor = -0.3; /* that this asks for, and asks of sharper ones */
+static const double gproji_corner_kept = 0.25;    /* a step that leaves less of a small corner is refused */
+static const double gproji_corner_none = 1e-3;    /* of corners and edges that are let go */
+static const double gproji_edge_floor = 0.15;     /* asked of shorter edges */
+static const double gproji_edge_kept = 0.5;       /* a step that leaves less of a short edge is refused */
+static const double gproji_dihedral_least = -0.1; /* cosine of a bend below which it gets a row, */
+static const double gproji_dihedral_wanted = 0;   /* what this asks for */
+static const double gproji_dihedral_floor = -0.3; /* asked of sharper bends */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
     GPROJI_CORNER_TERMS = 18
@@ -22183,7 +22189,7 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
 
 /* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was sharp when the
    solve began: then it is let go. */
-GPROJI_INTERNAL double gproji_bend(const gproji_part *part, const double *x, int32_t edge) {
+GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x, int32_t edge) {
     const gproj_form *form = part->form;
     const int32_t *face = form->mesh->face + 2 * (size_t)edge;
     const double *axis = gproji_corners_of(part)->axis;
@@ -22196,20 +22202,21 @@ GPROJI_INTERNAL double gproji_bend(const gproji_part *part, const double *x, int
    of the squared length, or which cosine the row asks for. */
 GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t item,
                                                gproj_term *term) {
-    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
-    int32_t edge = item - guard->edges, h = item / 2, k, t;
+    int32_t edge = item - corners->edges, h = item / 2, k, t;
     bool upright = item % 2 != 0;
     gproji_yielding yield = gproji_yield_of(part->form->system);
     double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
-    if (item >= guard->bends) {
-        const double *beside = x + part->form->normal[mesh->face[(item - guard->bends) ^ 1]];
+    if (item >= corners->bends) {
+        const double *beside = x + part->form->normal[mesh->face[(item - corners->bends) ^ 1]];
         for (k = 0; k < 3; ++k) term[k].a = beside[k];
-        has = yield == GPROJI_YIELD_SLOWLY ? gproji_bend(part, x, (item - guard->bends) / 2) : gproji_bend_floor;
-        return gproji_fmax(gproji_fmin(has, gproji_bend_wanted), gproji_bend_floor);
+        has = yield == GPROJI_YIELD_SLOWLY ? gproji_dihedral(part, x, (item - corners->bends) / 2)
+                                           : gproji_dihedral_floor;
+        return gproji_fmax(gproji_fmin(has, gproji_dihedral_wanted), gproji_dihedral_floor);
     }
     if (edge >= 0) {
-        double length = guard->length[edge], asked = gproji_edge_floor;
+        double length = corners->length[edge], asked = gproji_edge_floor;
         for (k = 0; k < 3; ++k) {
             term[3 * k].a = term[3 * k + 1].a = 1 / (length * length);
             term[3 * k + 2].a = -2 / (length * length);
@@ -22219,12 +22226,12 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
         return asked * asked;
     }
     gproji_corner_normal(part->form, x, x, mesh->face[h], m);
-    if (upright) gproji_copy3(guard->axis + 3 * (size_t)mesh->face[h], m);
+    if (upright) gproji_copy3(corners->axis + 3 * (size_t)mesh->face[h], m);
     gproji_corner_area(mesh, x, h, area);
-    has = gproji_dot3(area, m) / guard->size[h];
+    has = gproji_dot3(area, m) / corners->size[h];
     for (t = 0; t < GPROJI_CORNER_TERMS; t += 6) /* the six products of (a x b)'m for each pair a b of the corner */
         for (k = 0; k < 3; ++k) {
-            term[t + 2 * k].a = m[(k + 2) % 3] / guard->size[h];
+            term[t + 2 * k].a = m[(k + 2) % 3] / corners->size[h];
             term[t + 2 * k + 1].a = -term[t + 2 * k].a;
         }
     if (yield == GPROJI_YIELD_LAST) return upright ? gproji_corner_upright_last : gproji_corner_last;
@@ -22236,7 +22243,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
 GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, int32_t group,
                                             const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_corners *corners = gproji_corners_of(part);
     const gproji_group *g = gproji_group_at(system, group);
     const double *x = gproj_system_values(system);
     int32_t r, count;
@@ -22244,18 +22251,18 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     for (r = 0; r < g->row_count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         if (!(g->row[r].weight > 0)) continue;
-        gproji_place_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, guard->item[r], term));
+        gproji_place_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, corners->item[r], term));
     }
 }
 
 /* Adds the row of an item, without a weight yet. Returns the number; -1 after an error, or if there is no such corner
    or bend. */
 GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
-    gproji_corners *guard = gproji_corners_of(part);
+    gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
-    bool bends = item >= guard->bends;
-    int32_t edge = item - guard->edges, h = bends ? item - guard->bends : edge < 0 ? item / 2 : 2 * edge, vertex[3];
+    bool bends = item >= corners->bends;
+    int32_t edge = item - corners->edges, h = bends ? item - corners->bends : edge < 0 ? item / 2 : 2 * edge, vertex[3];
     int32_t face = mesh->face[h], beside = mesh->face[h ^ 1], count = 0, c, k, row;
     const int32_t *normal = part->form->normal;
     if (edge < 0 ? face < 0 : bends && (face < 0 || beside < 0 || normal[face] < 0 || normal[beside] < 0)) return -1;
@@ -22273,8 +22280,8 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
     row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, face);
     if (row < 0) return -1;
-    guard->item[row] = item;
-    guard->row[item] = row;
+    corners->item[row] = item;
+    corners->row[item] = row;
     return row;
 }
 
@@ -22288,7 +22295,7 @@ GPROJI_INTERNAL bool gproji_corner_acts_now(const gproji_part *part, int32_t ite
    gproji_wake_corners; at the first one it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
                                          bool first) {
-    const gproji_corners *guard = gproji_corners_of(part);
+    const gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
     int32_t f, h, c, k, e;
@@ -22296,27 +22303,27 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     for (f = 0; f < mesh->face_count; ++f) {
         double m[2][3], area[3];
         gproji_corner_normal(part->form, x, before, f, m[0]);
-        gproji_copy3(guard->axis + 3 * (size_t)f, m[1]);
+        gproji_copy3(corners->axis + 3 * (size_t)f, m[1]);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
-            if (!(guard->size[h] > 0)) continue;
+            if (!(corners->size[h] > 0)) continue;
             gproji_corner_area(mesh, x, h, area);
             for (k = 0; k < 2; ++k) {
-                if (gproji_dot3(area, m[k]) >= least[k] * guard->size[h] || gproji_corner_acts_now(part, 2 * h + k))
+                if (gproji_dot3(area, m[k]) >= least[k] * corners->size[h] || gproji_corner_acts_now(part, 2 * h + k))
                     continue;
                 if (first) return true;
-                guard->marked[2 * h + k] = 1;
+                corners->marked[2 * h + k] = 1;
                 found = true;
             }
         }
     }
     for (e = 0; e < mesh->edge_count; ++e) { /* with the bends behind both half-edges */
-        const int32_t item[3] = {guard->edges + e, guard->bends + 2 * e, guard->bends + 2 * e + 1};
-        bool is_long = gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * guard->length[e];
-        bool is_flat = !planar || gproji_bend(part, x, e) >= gproji_bend_least + margin;
+        const int32_t item[3] = {corners->edges + e, corners->bends + 2 * e, corners->bends + 2 * e + 1};
+        bool is_long = gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * corners->length[e];
+        bool is_flat = !planar || gproji_dihedral(part, x, e) >= gproji_dihedral_least + margin;
         for (k = 0; k < 3; ++k) {
             if ((k == 0 ? is_long : is_flat) || gproji_corner_acts_now(part, item[k])) continue;
             if (first) return true;
-            guard->marked[item[k]] = 1;
+            corners->marked[item[k]] = 1;
             found = true;
         }
     }
@@ -22344,16 +22351,16 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     gproj_form *form = (gproj_form *)user;
     gproj_system *system = form->system;
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    gproji_corners *guard = gproji_corners_of(part);
+    gproji_corners *corners = gproji_corners_of(part);
     int32_t item, row, edge;
     bool woken = false;
-    for (item = 0; item < guard->items; ++item) {
-        if (!guard->marked[item]) continue;
-        guard->marked[item] = 0;
-        row = guard->row[item] < 0 ? gproji_add_corner(part, item) : guard->row[item];
+    for (item = 0; item < corners->items; ++item) {
+        if (!corners->marked[item]) continue;
+        corners->marked[item] = 0;
+        row = corners->row[item] < 0 ? gproji_add_corner(part, item) : corners->row[item];
         if (row < 0) continue; /* without memory */
-        edge = item < guard->bends ? item - guard->edges : (item - guard->bends) / 2;
-        gproji_place_row(system, part->group, row, edge < 0 ? sqrt(guard->size[item / 2]) : guard->length[edge], 0);
+        edge = item < corners->bends ? item - corners->edges : (item - corners->bends) / 2;
+        gproji_place_row(system, part->group, row, edge < 0 ? sqrt(corners->size[item / 2]) : corners->length[edge], 0);
         woken = true;
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
@@ -22366,17 +22373,18 @@ GPROJI_INTERNAL bool gproji_mend_corners(void *user) {
     const gproj_form *form = (const gproj_form *)user;
     const gproji_part *part = gproji_acting_corners(form);
     bool planar = gproji_is_on(form, form->planarity);
-    const gproji_corners *guard;
+    const gproji_corners *corners;
     gproji_damages d;
     int32_t e, h;
     if (!part) return false;
-    guard = gproji_corners_of(part);
+    corners = gproji_corners_of(part);
     gproji_find_damages(form->mesh, gproj_system_values(form->system), form->original, &d);
     if (gproji_spoiled_of(&d).total == 0) return false;
     for (e = 0; e < form->mesh->edge_count; ++e)
-        guard->marked[guard->edges + e] = guard->length[e] > 0 && !gproji_corner_acts_now(part, guard->edges + e);
+        corners->marked[corners->edges + e] =
+            corners->length[e] > 0 && !gproji_corner_acts_now(part, corners->edges + e);
     for (h = 0; planar && h < form->mesh->halfedge_count; ++h)
-        guard->marked[2 * h + 1] = guard->size[h] > 0 && !gproji_corner_acts_now(part, 2 * h + 1);
+        corners->marked[2 * h + 1] = corners->size[h] > 0 && !gproji_corner_acts_now(part, 2 * h + 1);
     return gproji_wake_corners(user);
 }
 
@@ -22411,23 +22419,23 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
 
 /* Passes the rows during a solve, and the sizes and axes from when it began. */
 GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
-    gproji_corners *guard = gproji_corners_of(part);
+    gproji_corners *corners = gproji_corners_of(part);
     gproj_system *s = part->form->system;
     const gproj_mesh *mesh = part->form->mesh;
     int32_t count = gproji_group_at(s, part->group)->row_count, r;
     if (!passing) return;
-    gproji_pass_doubles(stream, guard->size, (size_t)mesh->halfedge_count);
-    gproji_pass_doubles(stream, guard->length, (size_t)mesh->edge_count);
-    gproji_pass_doubles(stream, guard->axis, 3 * (size_t)mesh->face_count);
-    gproji_pass_integer(stream, &guard->rounds, 0, INT32_MAX / 2);
+    gproji_pass_doubles(stream, corners->size, (size_t)mesh->halfedge_count);
+    gproji_pass_doubles(stream, corners->length, (size_t)mesh->edge_count);
+    gproji_pass_doubles(stream, corners->axis, 3 * (size_t)mesh->face_count);
+    gproji_pass_integer(stream, &corners->rounds, 0, INT32_MAX / 2);
     count = gproji_pass_integer(stream, &count, 0, count);
     for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t item = gproji_comes_in(stream) ? 0 : guard->item[r];
-        item = gproji_pass_integer(stream, &item, 0, guard->items - 1);
-        if (stream->wrong || guard->row[item] < 0)
+        int32_t item = gproji_comes_in(stream) ? 0 : corners->item[r];
+        item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
+        if (stream->wrong || corners->row[item] < 0)
             gproji_spoil(stream, "a corner or edge has no row");
         else
-            gproji_pass_standing(stream, s, part->group, guard->row[item], passing);
+            gproji_pass_standing(stream, s, part->group, corners->row[item], passing);
     }
     if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, NULL);
 }
@@ -22439,55 +22447,55 @@ static const gproji_rule gproji_corner_rule = {"corners",          GPROJ_BOUND, 
 /* Adds the group, without rows yet, and its arrays; a form has one. */
 GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     gproji_part *part = gproji_new_part(form, &gproji_corner_rule, 0);
-    gproji_corners *guard = (gproji_corners *)gproji_part_take(part, 1, sizeof *guard);
+    gproji_corners *corners = (gproji_corners *)gproji_part_take(part, 1, sizeof *corners);
     const gproj_mesh *mesh = form->mesh;
-    if (!guard) return;
-    part->data = guard;
-    guard->edges = 2 * mesh->halfedge_count;
-    guard->bends = guard->edges + mesh->edge_count;
-    guard->items = guard->bends + mesh->halfedge_count;
-    guard->size = (double *)gproji_part_take(part, mesh->halfedge_count, sizeof *guard->size);
-    guard->length = (double *)gproji_part_take(part, mesh->edge_count, sizeof *guard->length);
-    guard->axis = (double *)gproji_part_take(part, 3 * (int64_t)mesh->face_count, sizeof *guard->axis);
-    guard->row = (int32_t *)gproji_part_take(part, guard->items, sizeof *guard->row);
-    guard->item = (int32_t *)gproji_part_take(part, guard->items, sizeof *guard->item);
-    guard->marked = (uint8_t *)gproji_part_take(part, guard->items, 1);
+    if (!corners) return;
+    part->data = corners;
+    corners->edges = 2 * mesh->halfedge_count;
+    corners->bends = corners->edges + mesh->edge_count;
+    corners->items = corners->bends + mesh->halfedge_count;
+    corners->size = (double *)gproji_part_take(part, mesh->halfedge_count, sizeof *corners->size);
+    corners->length = (double *)gproji_part_take(part, mesh->edge_count, sizeof *corners->length);
+    corners->axis = (double *)gproji_part_take(part, 3 * (int64_t)mesh->face_count, sizeof *corners->axis);
+    corners->row = (int32_t *)gproji_part_take(part, corners->items, sizeof *corners->row);
+    corners->item = (int32_t *)gproji_part_take(part, corners->items, sizeof *corners->item);
+    corners->marked = (uint8_t *)gproji_part_take(part, corners->items, 1);
     if (!gproji_form_ready(form)) return;
-    memset(guard->row, -1, (size_t)guard->items * sizeof *guard->row);
+    memset(corners->row, -1, (size_t)corners->items * sizeof *corners->row);
     gproji_add_group(part, 0);
 }
 
-/* Sets the guard for a solve that begins: no corner acts yet. */
-GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool smooth) {
-    bool wanted = smooth && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+/* Sets the safeguards, if asked for and of use, for a solve that begins: no corner acts yet. */
+GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
+    bool wanted = asked && (gproji_is_on(form, form->planarity) || gproji_carries(form));
     const gproj_mesh *mesh = form->mesh;
     const double *x;
     const gproji_group *g;
-    gproji_corners *guard;
+    gproji_corners *corners;
     gproji_part *part;
     int32_t r, f, h, c, e;
     if (wanted && !gproji_own_part(form, GPROJI_OWN_CORNERS)) gproji_add_corners(form);
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     if (!part || !gproji_form_ready(form)) return;
-    guard = gproji_corners_of(part);
+    corners = gproji_corners_of(part);
     gproj_system_set_schedule(form->system, part->group, gproj_keep(wanted ? gproji_corner_weight : 0));
-    guard->rounds = 0;
+    corners->rounds = 0;
     g = gproji_group_at(form->system, part->group);
     for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
     x = gproj_system_values(form->system);
     /* The sizes that corners and edges have now. */
     for (f = 0; wanted && f < mesh->face_count; ++f) {
-        double area[3], *axis = guard->axis + 3 * (size_t)f;
+        double area[3], *axis = corners->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             gproji_corner_area(mesh, x, h, area);
-            guard->size[h] = gproji_dot3(area, axis);
-            if (!(guard->size[h] > gproji_corner_none)) guard->size[h] = 0;
+            corners->size[h] = gproji_dot3(area, axis);
+            if (!(corners->size[h] > gproji_corner_none)) corners->size[h] = 0;
         }
     }
     for (e = 0; wanted && e < mesh->edge_count; ++e) {
-        guard->length[e] = gproji_edge_length(mesh, x, e);
-        if (!(guard->length[e] > gproji_corner_none)) guard->length[e] = 0;
+        corners->length[e] = gproji_edge_length(mesh, x, e);
+        if (!(corners->length[e] > gproji_corner_none)) corners->length[e] = 0;
     }
 }
 
@@ -23569,7 +23577,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
        8 bytes "gprojstH", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
-   have. A state is checked from beginning to end before any of it is read: a refused one changes nothing.
+   have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
 
    Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or
    in the state: then they lose their weight. */
