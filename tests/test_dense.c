@@ -225,6 +225,23 @@ static void check_tiles(const gproji_kernels *kernels, uint64_t *seed) {
             }
 }
 
+static bool has_kernels(const char *name) {
+    const gproji_kernels *kernels;
+    int32_t kind;
+    FOR_ALL_KERNELS if (!strcmp(kernels->name, name)) return true;
+    return false;
+}
+
+/* Vector units that the compiler's own question finds are used, and no others. */
+GPROJT_TEST(dense_units_of_this_processor) {
+#if GPROJI_CHOICE && defined(__GNUC__)
+    GPROJT_CHECK(has_kernels("AVX-512") == (__builtin_cpu_supports("avx512f") != 0));
+#ifdef GPROJI_KIND_AVX2
+    GPROJT_CHECK(has_kernels("AVX2") == (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")));
+#endif
+#endif
+}
+
 GPROJT_TEST(dense_tiles) {
     const gproji_kernels *kernels;
     uint64_t seed = 2;
@@ -391,6 +408,7 @@ GPROJT_TEST(symmetric_3x3) {
 
 int main(void) {
     GPROJT_RUN(symmetric_3x3);
+    GPROJT_RUN(dense_units_of_this_processor);
     GPROJT_RUN(dense_tiles);
     GPROJT_RUN(dense_panels);
     GPROJT_RUN(dense_failing_pivots);

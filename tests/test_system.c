@@ -1010,6 +1010,7 @@ GPROJT_TEST(empty_systems) {
     GPROJT_CHECK(gproj_system_add_variables(s, 0, 3, NULL) == 0);
     gprojt_add_group(s, "constant", GPROJ_CONSTRAINT, 1); /* no variables, a row without terms that cannot hold */
     gproj_system_add_row(s, 0, 0, NULL, 2, 7);
+    GPROJT_CHECK(s->group[0].term && s->group[0].local.variable); /* nothing is added to NULL */
     result = gproj_system_solve(s, 5, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_STALLED || result.outcome == GPROJ_ITERATION_LIMIT);
     GPROJT_CHECK(result.residual == 2 && result.worst_group == 0 && result.worst_element == 7);
