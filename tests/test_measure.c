@@ -376,6 +376,14 @@ GPROJT_TEST(deviation_and_displacement) {
     for (k = 0; k < 3; ++k) longer[3 * n + k] = 1e3;
     GPROJT_NEAR(gproj_measure(mesh, longer, NULL).deviation_max, 0.5 / diagonal, 1e-15);
     free(longer);
+    /* The place does not matter: all coordinates negative, then all positive. */
+    for (i = -1; i <= 1; i += 2) {
+        double *there = gprojt_keep(mesh);
+        for (k = 0; k < 3 * n; ++k) there[k] = before[k] + 16 * i, mesh->position[k] += 16 * i;
+        GPROJT_NEAR(gproj_measure(mesh, there, NULL).deviation_max, 0.5 / diagonal, 1e-13);
+        for (k = 0; k < 3 * n; ++k) mesh->position[k] -= 16 * i;
+        free(there);
+    }
     free(before);
     gproj_mesh_destroy(mesh);
 }
