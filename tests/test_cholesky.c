@@ -1034,8 +1034,8 @@ static bool factor_with(const gproj_host *host, void *user) {
     return outcome == GPROJ_FACTORED;
 }
 
-/* The first factorisation takes the memory that the analysis has foretold, but for a few small arrays, and for the scatter runs, of
-   which grids have many: these are there since the analysis. */
+/* The first factorisation takes the memory that the analysis has foretold, but for a few small arrays, and for the scatter runs,
+   of which grids have many: these are there since the analysis. */
 GPROJT_TEST(cholesky_memory_is_foretold) {
     int32_t band, j, i;
     for (band = 0; band < 300; band = 4 * band + (band == 0)) {
