@@ -11405,6 +11405,7 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     return sum <= 0.01 * size;
 }
 
+static const double gproji_almost = 1e-9; /* residual that rounding of the input explains */
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
 /* Writes why the rows of the worst group, g, do not hold, and advice. */
@@ -11444,6 +11445,9 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       s->group[wish].name);
     else if (!stalled && !balanced)
         gproji_format(more, size, "%s", gproji_more_iterations);
+    else if (loop->options.tolerance <= 0 && loop->standing.residual <= gproji_almost)
+        gproji_format(more, size, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
+                      pow(10, ceil(log10(loop->standing.residual))));
     else if (second >= 0)
         gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
     else

@@ -1128,6 +1128,35 @@ GPROJT_TEST(sentences) {
     gproj_system_destroy(s);
 }
 
+/* What coordinates with nine digits may lack is no conflict: the sentence tells the tolerance that accepts it, and it does. */
+GPROJT_TEST(conflicts_of_the_last_digits) {
+    static const double x[1] = {0.5};
+    int i;
+    for (i = 0; i < 3; ++i) {
+        double apart = i == 0 ? 6e-12 : i == 1 ? 1.9e-9 : 2.1e-9;
+        gproj_system *s = gprojt_system(NULL, 1, 1, x);
+        gproj_solve_options options;
+        gproj_result result;
+        gprojt_add_group(s, "zero", GPROJ_CONSTRAINT, 1);
+        gprojt_add_group(s, "more", GPROJ_CONSTRAINT, 1);
+        gprojt_add_linear(s, 0, 0, 1, 0, 0);
+        gprojt_add_linear(s, 1, 0, 1, -apart, 0);
+        result = gproj_system_solve(s, 50, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED);
+        GPROJT_CHECK((strstr(result.message, "work against each other") != NULL) == (i == 2));
+        if (i < 2) {
+            GPROJT_CHECK(strstr(result.message,
+                                i == 0
+                                    ? "; coordinates of nine digits leave as much: a tolerance of 1e-11 would accept it"
+                                    : "a tolerance of 1e-09 would accept it"));
+            memset(&options, 0, sizeof options);
+            options.tolerance = i == 0 ? 1e-11 : 1e-9;
+            GPROJT_CHECK(gproj_system_solve(s, 50, &options).outcome == GPROJ_CONVERGED);
+        }
+        gproj_system_destroy(s);
+    }
+}
+
 /* One group alone conflicts with nothing: x^2 + 1 = 0, and three points whose distances violate the triangle inequality. */
 GPROJT_TEST(one_group_is_no_conflict) {
     static const double x[6] = {0, 0, 1, 0, 0.5, 0.3};
@@ -1674,6 +1703,7 @@ int main(void) {
     GPROJT_RUN(wishes_alone);
     GPROJT_RUN(words_for_every_place);
     GPROJT_RUN(sentences);
+    GPROJT_RUN(conflicts_of_the_last_digits);
     GPROJT_RUN(one_group_is_no_conflict);
     GPROJT_RUN(a_wish_that_never_fades);
     GPROJT_RUN(weights_below_epsilon);
