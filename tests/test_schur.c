@@ -126,7 +126,7 @@ static void gprojt_begin(gproj_form *form, bool skip_guard) {
     memset(&options, 0, sizeof options);
     options.skip_closeness = true;
     options.skip_guard = skip_guard;
-    GPROJT_REQUIRE(gproji_begin_solve(form, 20, &options));
+    GPROJT_REQUIRE(gproji_begin_solve(form, 20, &gproji_beginnings[0], &options));
     GPROJT_REQUIRE(gproji_compile(form->system, false) == GPROJ_OK);
     form->system->solving = true;
     gproji_begin_run(&form->solve.loop);
