@@ -1497,9 +1497,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
      limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
-   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again, first guided by
-     closeness to where it began with weights 0.3 * 0.7^n for 20 iterations, then with stiffer steps: at most three
-     attempts with `iterations` in all; the best end counts (gproj_result.attempts). Not in frames (gproj_solve_begin).
+   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again: if they hold on a
+     spoiled mesh at first, guided by closeness to where it began with weights 0.3 * 0.7^n for 20 iterations, otherwise
+     with stiffer steps. At most three attempts share `iterations`, and the best end counts (gproj_result.attempts).
+     Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -23141,15 +23142,17 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
    meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
 static const double gproji_metric_force = 0.3; /* of changes of forces, once steps fail */
-/* How the attempts of a smooth solve begin. Closeness to the start is no bias by default; where constraints have led
-   far away, such as a shape that hangs to one that stands, it finds what there is nearby. */
+/* How the attempts of a smooth solve begin: the first, the one nearby, the stiffer ones. Closeness to the start is no
+   bias by default; where constraints have led far away, such as a shape that hangs to one that stands, it finds what
+   there is nearby. */
 typedef struct gproji_beginning {
     double stiffness;
     double closeness; /* its weight at first; it fades by 0.7 an iteration and lasts for 20 */
 } gproji_beginning;
-static const gproji_beginning gproji_beginnings[] = {{1, 0}, {10, 0.3}, {10, 0}};
+static const gproji_beginning gproji_beginnings[] = {{1, 0}, {10, 0.3}, {10, 0}, {3, 0}};
 enum {
-    GPROJI_ATTEMPTS_MOST = sizeof gproji_beginnings / sizeof *gproji_beginnings,
+    GPROJI_NEARBY = 1,
+    GPROJI_ATTEMPTS_MOST = 3,
     GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
 };
 
@@ -23455,7 +23458,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     bool started = form->statics && form->statics->started, here = true;
     gproj_solve_options how = *options;
     gproj_result result;
-    int32_t used, attempt = 1, k;
+    int32_t used, attempt = 1, stiffer = GPROJI_NEARBY + 1, k;
     if (!start || !end) {
         gproji_give(&form->heap, start, count, sizeof *start);
         gproji_give(&form->heap, end, count, sizeof *end);
@@ -23471,12 +23474,14 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (iterations - used < GPROJI_ATTEMPT_LEAST) break;
         if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
-        /* 2. Back to the start, forces included, and again. */
+        /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh at first, there may be a
+           whole one nearby; otherwise stiffer steps may lead on. */
+        k = attempt == 1 && result.outcome == GPROJ_CONVERGED ? GPROJI_NEARBY : stiffer++;
         if (here) memcpy(end, x, count * sizeof *end);
         gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
-        other = gproji_attempt(form, iterations - used, used, &gproji_beginnings[attempt], &how);
+        other = gproji_attempt(form, iterations - used, used, &gproji_beginnings[k], &how);
         used = other.iterations;
         /* 3. The better of the two; its seconds are those of all attempts. */
         here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || gproji_ends_better(&other, &result);
