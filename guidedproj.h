@@ -11448,7 +11448,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
         gproji_format(more, size, "%s", gproji_more_iterations);
     else if (loop->options.tolerance <= 0 && loop->standing.residual <= gproji_almost)
         gproji_format(more, size, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
-                      pow(10, ceil(log10(loop->standing.residual))));
+                      pow(10.0, ceil(log10(loop->standing.residual))));
     else if (second >= 0)
         gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
     else
@@ -23227,14 +23227,14 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
    closeness of its beginning. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
-    bool others = gproji_has_active_wish(form), wanted = !skip && !others, near = beginning->closeness > 0;
+    bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
     int32_t half = gproji_max(1, iterations - iterations / 2), closeness, i;
     gproj_schedule schedule;
-    if (wanted || near) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
+    if (wanted || nearby) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
     closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
     if (closeness >= 0) {
-        schedule = near ? gproj_fade(beginning->closeness, 20) : gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
-        schedule.decay = near ? 0.7 : 0.3;
+        schedule = nearby ? gproj_fade(beginning->closeness, 20) : gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
+        schedule.decay = nearby ? 0.7 : 0.3;
         if (nearest && wanted) schedule = gproj_keep(1);
         gproj_system_set_schedule(form->system, closeness, schedule);
         for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
