@@ -1499,8 +1499,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again: if they hold on a
      spoiled mesh at first, guided by closeness to where it began with weights 0.3 * 0.7^n for 20 iterations, otherwise
-     with stiffer steps. At most three attempts share `iterations`, and the best end counts (gproj_result.attempts).
-     Not in frames (gproj_solve_begin).
+     (or with skip_closeness) with stiffer steps. At most three attempts share `iterations`, and the best end counts
+     (gproj_result.attempts). Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -10333,7 +10333,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    displacement along edges) add
        k^2 sum (w g'dx)^2,    k the stiffness
    to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
-   so they bias nothing and are no part of merit and residual. The stiffness k is 1 or 10 at the beginning and follows
+   so they bias nothing and are no part of merit and residual. The stiffness k is 1 to 10 at the beginning and follows
    the agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails
    or falls short. Once it is small near a solution the metric rests and the last steps are Newton's. If such a step
    fails the metric comes back and rests again only when a step lowers the merit tenfold; until then k may fall below
@@ -11838,7 +11838,6 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
 GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
-    int32_t guided = GPROJI_NEAREST_GUIDED;
     int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
     int32_t last = iterations - gproji_min(restore, iterations / 3), i;
     uint32_t state = 1;
@@ -11855,11 +11854,11 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
             gproji_let_safeguards_yield(loop);
         loop->watch.fallen = loop->standing.residual;
         /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
-        moved = n > guided && n <= last && gproji_slide(loop);
-        if (!moved && (n <= guided || !gproji_holds(loop))) {
-            gproji_set_nearest_weights(s, n <= guided ? 0.999 * gproji_nearest_scale : 0);
+        moved = n > GPROJI_NEAREST_GUIDED && n <= last && gproji_slide(loop);
+        if (!moved && (n <= GPROJI_NEAREST_GUIDED || !gproji_holds(loop))) {
+            gproji_set_nearest_weights(s, n <= GPROJI_NEAREST_GUIDED ? 0.999 * gproji_nearest_scale : 0);
             for (i = 0; i < s->group_count; ++i)
-                if (s->group[i].role == GPROJI_GUARD && n <= guided)
+                if (s->group[i].role == GPROJI_GUARD && n <= GPROJI_NEAREST_GUIDED)
                     s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
             gproji_linearise(loop);
             moved = gproji_iterate(loop);
@@ -11867,7 +11866,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         if (!moved) return n > last ? GPROJ_ITERATION_LIMIT : GPROJ_STALLED;
         /* 2. To and fro in an order without symmetry, always the same: symmetric meshes would stay on a saddle, where a
            symmetric step cannot leave it. */
-        for (i = 0; n == guided && i < s->variable_count; ++i) {
+        for (i = 0; n == GPROJI_NEAREST_GUIDED && i < s->variable_count; ++i) {
             state = state * 1664525u + 1013904223u;
             s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
         }
@@ -23476,7 +23475,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
         /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh at first, there may be a
            whole one nearby; otherwise stiffer steps may lead on. */
-        k = attempt == 1 && result.outcome == GPROJ_CONVERGED ? GPROJI_NEARBY : stiffer++;
+        k = attempt == 1 && result.outcome == GPROJ_CONVERGED && !how.skip_closeness ? GPROJI_NEARBY : stiffer++;
         if (here) memcpy(end, x, count * sizeof *end);
         gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);

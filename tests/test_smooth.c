@@ -398,6 +398,27 @@ GPROJT_TEST(bowls_stand_nearby) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Who skips closeness gets none in any attempt, also where the first one ends on a spoiled mesh. */
+GPROJT_TEST(closeness_that_is_skipped_stays_out) {
+    int skipped;
+    for (skipped = 0; skipped < 2; ++skipped) {
+        gproj_mesh *mesh = gprojt_twisted(12, 0.2);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        const gproj_system *system = gproj_form_system(form);
+        bool close = false;
+        int32_t g;
+        gprojt_add_planar_fixed(form, NULL);
+        options.skip_guard = true, options.skip_closeness = skipped == 1;
+        GPROJT_CHECK(gproj_solve(form, 100, &options).attempts > 1);
+        for (g = 0; g < gproj_system_group_count(system); ++g)
+            close = close || !strcmp(gproj_system_group_info(system, g).name, "closeness");
+        GPROJT_CHECK(close == !skipped);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 typedef struct gprojt_attempts {
     int32_t last, calls, cancel_at;
     bool ascending;
@@ -1030,6 +1051,7 @@ int main(void) {
     GPROJT_RUN(creeping_corners_ask_for_less);
     GPROJT_RUN(creeping_takes_iterations);
     GPROJT_RUN(bowls_stand_nearby);
+    GPROJT_RUN(closeness_that_is_skipped_stays_out);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(later_attempts_end_early);
