@@ -7825,6 +7825,8 @@ struct gproj_system {
     double stiffness;      /* in steps: factor on the weights of metric groups; 0: they rest */
     gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
     double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
+    bool astray;           /* x is so far away that refreshed rows may overflow, */
+    bool overflowed;       /* and one has: the step will be taken back */
     double *x;
     gproji_blocks blocks;
     gproji_group *group;
@@ -8412,6 +8414,10 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     g = &s->group[group];
     count = g->row[row].terms;
     for (t = 0; coefficients && t < count; ++t) finite &= gproji_is_finite(coefficients[t]);
+    if (!finite && s->astray) {
+        s->overflowed = true;
+        return GPROJ_ERROR_NUMBER;
+    }
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
@@ -11182,6 +11188,9 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     }
 }
 
+/* Steps beyond this lead to where squared areas overflow. */
+#define GPROJI_ASTRAY 1e70
+
 /* One iteration from a linearised x to the next. False when no trial was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11210,8 +11219,10 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_settle(loop);
         } /* else x is there */
         gproji_lap(loop, GPROJ_PHASE_REFRESH);
+        s->astray = loop->iteration.step > GPROJI_ASTRAY, s->overflowed = false;
         if (stepped) gproji_linearise(loop);
-        if (stepped && loop->standing.merit <= DBL_MAX) {
+        s->astray = false;
+        if (stepped && !s->overflowed && loop->standing.merit <= DBL_MAX) {
             loop->trust.left = before.merit > 0 ? loop->standing.merit / before.merit : 0;
             if (!gproji_wishes_are_on(s) && before.residual < gproji_epsilon_max &&
                 loop->standing.residual > 0.5 * before.residual)
@@ -21622,6 +21633,13 @@ GPROJI_INTERNAL double gproji_force_density(const gproj_form *form, int32_t edge
     return gproj_system_values(form->system)[s->force[edge]] * form->scale / s->load_scale;
 }
 
+/* Refuses a density that no number can tell: that of loads of 1e300, for one. */
+GPROJI_INTERNAL gproj_code gproji_check_density(int32_t edge, double density, gproj_error *error) {
+    if (gproji_is_finite(density)) return GPROJ_OK;
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, edge,
+                       "the force density of edge %d is beyond all numbers; use a larger unit of force", edge);
+}
+
 /* out += the sum of forces in each vertex at x. density: per edge; NULL: those of the form, in the caller's units. */
 GPROJI_INTERNAL void gproji_add_forces(const gproj_form *form, const double *x, const double *density, double *out) {
     int32_t e;
@@ -21663,11 +21681,16 @@ GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, do
     for (v = 0; v < form->mesh->vertex_count; ++v)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)v, x + 3 * (size_t)v);
     if (mean >= 0 && gproji_solve_balance(form, x, 0, 0, &p)) {
+        bool whole = true;
         gproji_unbalanced(form, x, p.force, p.load, p.load);
-        for (v = 0; residuals && v < form->mesh->vertex_count; ++v)
+        for (e = 0; e < form->mesh->edge_count; ++e) {
+            p.force[e] *= mean * form->scale;
+            if (densities) whole = gproji_check_density(e, p.force[e], error) == GPROJ_OK && whole;
+        }
+        for (v = 0; whole && residuals && v < form->mesh->vertex_count; ++v)
             residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) : 0;
-        for (v = 0; left && v < 3 * form->mesh->vertex_count; ++v) left[v] = mean > 0 ? p.load[v] : 0;
-        for (e = 0; densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e] * mean * form->scale;
+        for (v = 0; whole && left && v < 3 * form->mesh->vertex_count; ++v) left[v] = mean > 0 ? p.load[v] : 0;
+        for (e = 0; whole && densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e];
     }
     gproji_pool_give_all(&p.pool);
 }
@@ -21834,8 +21857,10 @@ GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities,
     gproj_code code = gproji_begin_question(form, "get forces", densities != NULL, error);
     int32_t e;
     if (code) return code;
-    for (e = 0; e < form->mesh->edge_count; ++e) densities[e] = gproji_force_density(form, e);
-    return GPROJ_OK;
+    for (e = 0; e < form->mesh->edge_count && code == GPROJ_OK; ++e)
+        code = gproji_check_density(e, gproji_force_density(form, e), error);
+    for (e = 0; e < form->mesh->edge_count && code == GPROJ_OK; ++e) densities[e] = gproji_force_density(form, e);
+    return code;
 }
 
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {

@@ -1009,6 +1009,42 @@ GPROJT_TEST(plates_are_infeasible) {
 
 /* -- the start of forces -- */
 
+/* Forces beyond all numbers are refused by the edge's name, and nothing is written. */
+GPROJT_TEST(forces_beyond_all_numbers) {
+    gproj_mesh *mesh = gprojt_vault(TRIANGLES, 3, 3, 1);
+    double *w = gprojt_numbers(mesh->edge_count), *residuals = gprojt_numbers(mesh->vertex_count);
+    double *load = gprojt_numbers(3 * mesh->vertex_count);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    gproj_error error;
+    int32_t e, v, carrying = -1;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; e < mesh->edge_count; ++e)
+        if (gprojt_inside_force(form, e) >= 0) carrying = e;
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1e308;
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
+    gproj_system_values(gproj_form_system(form))[gproj_force_variable(form, carrying)] = 1e3;
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = -1;
+    GPROJT_CHECK(gproj_get_forces(form, w, &error) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && error.index == carrying);
+    for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == -1);
+    GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+    gproj_form_destroy(form);
+
+    /* large loads on edges of next to no length */
+    for (v = 0; v < 3 * mesh->vertex_count; ++v) mesh->position[v] *= 1e-200, load[v] = v % 3 == 2 ? -1e150 : 0;
+    for (v = 0; v < mesh->vertex_count; ++v) residuals[v] = -1;
+    loads.density = 0, loads.point_load = load;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    GPROJT_CHECK(gproj_find_forces(form, w, residuals, &error) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && w[0] == -1 && residuals[0] == -1);
+    GPROJT_CHECK(gproj_find_forces(form, NULL, residuals, NULL) == GPROJ_OK && residuals[0] >= 0);
+    gproj_form_destroy(form);
+    free(w), free(residuals), free(load);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(forces_are_kept_and_set) {
     gproj_mesh *mesh = gprojt_vault(TRIANGLES, 6, 10, 3);
     double *w = gprojt_numbers(mesh->edge_count), *again = gprojt_numbers(mesh->edge_count);
@@ -2202,6 +2238,7 @@ int main(void) {
     GPROJT_RUN(no_loads_no_forces);
     GPROJT_RUN(funicular_shapes_and_plates);
     GPROJT_RUN(plates_are_infeasible);
+    GPROJT_RUN(forces_beyond_all_numbers);
     GPROJT_RUN(forces_are_kept_and_set);
     GPROJT_RUN(forces_are_variables);
     GPROJT_RUN(parts_without_support_are_named);
