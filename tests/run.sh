@@ -11,6 +11,7 @@ jobs=2
 if [ "${1:-}" = -j ]; then jobs=$2; shift 2; fi
 export logs=${logs:-build/log}
 export ASAN_OPTIONS="${ASAN_OPTIONS:-allocator_may_return_null=1:detect_stack_use_after_return=1}"
+export OPENBLAS_NUM_THREADS="${OPENBLAS_NUM_THREADS:-1}" # its threads spin where others compute
 export UBSAN_OPTIONS="${UBSAN_OPTIONS:-print_stacktrace=1}"
 export LIMIT="${LIMIT:-900}" # seconds for one test
 rm -rf "$logs" && mkdir -p "$logs"

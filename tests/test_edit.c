@@ -397,7 +397,11 @@ static void gprojt_random_edits(long wanted, uint64_t state) {
         for (kind = 0; kind < GPROJT_EDITS; ++kind) printf("  edit %d: %ld of %ld\n", kind, done[kind], tried[kind]);
 }
 
+#ifdef GPROJT_SANITIZED
+GPROJT_TEST(ten_thousand_of_each) { gprojt_random_edits(3000, 5); } /* the rest without sanitizers */
+#else
 GPROJT_TEST(ten_thousand_of_each) { gprojt_random_edits(10000, 5); }
+#endif
 
 /* -- splitting, cutting, collapsing -- */
 

@@ -932,7 +932,7 @@ static bool gprojt_solve_twice(const gproj_host *host, void *user) {
 }
 
 GPROJT_TEST(every_allocation_fails_once) {
-    gproj_mesh *mesh = gprojt_twisted(5, 0.2);
+    gproj_mesh *mesh = gprojt_twisted(4, 0.2);
     gproj_solve_options options = gprojt_smooth();
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planar, NULL, 30, &options) >= 30);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 30, &options) >= 30);
