@@ -1150,7 +1150,7 @@ typedef struct gproj_measures {
     int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
     int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal */
     int32_t degenerate_faces;            /* vectorial area below 1e-12 squared mean edges */
-    int32_t collapsed_edges;             /* not longer than 1e-6 mean edges; gproj_spoiled counts more */
+    int32_t degenerate_edges;            /* not longer than 1e-6 mean edges; see gproj_spoiled, too */
     /* Sum over interior vertices: area of the vertex star's Gauss image, the spherical polygon of the face normals, as
        a sum of triangle areas about their mean. */
     double gauss_variation;
@@ -16716,7 +16716,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
         if (e == 0 || length < m.min_edge) m.min_edge = length;
         if (length > m.max_edge) m.max_edge = length;
         m.length += length;
-        m.collapsed_edges += length <= 1e-6 * m.mean_edge;
+        m.degenerate_edges += length <= 1e-6 * m.mean_edge;
         m.folded_edges += gproji_is_folded(&normals, e);
     }
     gproji_measure_faces(mesh, planarity, &m);

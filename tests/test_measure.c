@@ -173,8 +173,8 @@ GPROJT_TEST(narrow_faces_that_are_not_planar) {
     }
 }
 
-/* Edges of at most 1e-6 of the mean edge have collapsed. */
-GPROJT_TEST(collapsed_edges) {
+/* Edges of at most 1e-6 of the mean edge are degenerate. */
+GPROJT_TEST(degenerate_edges) {
     static const double lengths[5] = {0, 1e-9, 0.999e-6, 1.001e-6, 1e-3};
     int i;
     for (i = 0; i < 5; ++i) {
@@ -182,18 +182,18 @@ GPROJT_TEST(collapsed_edges) {
         gproj_measures m = gproj_measure(mesh, NULL, NULL);
         double mean, *p = mesh->position;
         int32_t k;
-        GPROJT_CHECK(m.collapsed_edges == 0);
+        GPROJT_CHECK(m.degenerate_edges == 0);
         memcpy(p + 3 * 8, p + 3 * 9, 3 * sizeof(double)); /* neighbours within a row */
         memcpy(p + 3 * 30, p + 3 * 31, 3 * sizeof(double));
         mean = gproj_mesh_mean_edge_length(mesh);
         p[3 * 8 + 2] += lengths[i] * mean;
         p[3 * 30] += lengths[i] * mean;
         m = gproj_measure(mesh, NULL, NULL);
-        if (m.collapsed_edges != (i < 3 ? 2 : 0)) printf("  length %g: %d collapsed\n", lengths[i], m.collapsed_edges);
-        GPROJT_CHECK(m.collapsed_edges == (i < 3 ? 2 : 0));
+        if (m.degenerate_edges != (i < 3 ? 2 : 0)) printf("  length %g: %d degenerate\n", lengths[i], m.degenerate_edges);
+        GPROJT_CHECK(m.degenerate_edges == (i < 3 ? 2 : 0));
         GPROJT_NEAR(m.min_edge, lengths[i] * mean, 1e-15);
         for (k = 0; k < 3 * mesh->vertex_count; ++k) p[k] = 2; /* the whole mesh */
-        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).collapsed_edges == mesh->edge_count);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).degenerate_edges == mesh->edge_count);
         gproj_mesh_destroy(mesh);
     }
 }
@@ -805,7 +805,7 @@ int main(void) {
     GPROJT_RUN(planarity_below_all_squares);
     GPROJT_RUN(narrow_planar_faces);
     GPROJT_RUN(narrow_faces_that_are_not_planar);
-    GPROJT_RUN(collapsed_edges);
+    GPROJT_RUN(degenerate_edges);
     GPROJT_RUN(each_kind_of_damage);
     GPROJT_RUN(damage_begins_where_it_is_said);
     GPROJT_RUN(old_damage_does_not_count);

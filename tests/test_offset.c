@@ -111,7 +111,7 @@ GPROJT_TEST(conical_meshes) {
         if (result.outcome == GPROJ_CONVERGED) {
             GPROJT_CHECK(m.conicality_max < 1e-10 && m.planarity_max < 1e-12);
             GPROJT_CHECK(gprojt_angle_balance(mesh) < 1e-10);
-            GPROJT_CHECK(m.collapsed_edges == 0 && m.turned_faces == 0);
+            GPROJT_CHECK(m.degenerate_edges == 0 && m.turned_faces == 0);
         }
         gproj_mesh_destroy(mesh);
     }

@@ -49,7 +49,7 @@ GPROJT_TEST(circular_faces) {
             printf("    shape %d: worst %g; %s\n", shape, worst, result.message);
         GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && worst < 1e-10);
         GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).circularity_max < 1e-9);
-        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).collapsed_edges == 0);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).degenerate_edges == 0);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }

@@ -277,7 +277,7 @@ static void gprojx_report_measures(gprojx_json *j, const char *key, const gproj_
     gprojx_json_integer(j, "folded_edges", m->folded_edges);
     gprojx_json_integer(j, "bow_tie_faces", m->bow_tie_faces);
     gprojx_json_integer(j, "degenerate_faces", m->degenerate_faces);
-    gprojx_json_integer(j, "collapsed_edges", m->collapsed_edges);
+    gprojx_json_integer(j, "degenerate_edges", m->degenerate_edges);
     gprojx_json_number(j, "gauss_variation", m->gauss_variation);
     gprojx_json_number(j, "mean_edge", m->mean_edge);
     gprojx_json_number(j, "min_edge", m->min_edge);

@@ -146,7 +146,7 @@ _struct("gproj_surface_hit", "double[3] point, normal; double distance; int32 fa
 _struct("gproj_measures", "double mean_edge, min_edge, max_edge, length, area, min_face_area, max_face_area, "
         "planarity_max, planarity_mean; int32 planarity_face; double circularity_max, area_spread, diagonal_max, "
         "conicality_max, deviation_max, deviation_rms, displacement_mean; int32 turned_faces, folded_edges, "
-        "bow_tie_faces, degenerate_faces, collapsed_edges; double gauss_variation")
+        "bow_tie_faces, degenerate_faces, degenerate_edges; double gauss_variation")
 _struct("gproj_offset_measures", "double face_distance_min, face_distance_max, vertex_distance_min, "
         "vertex_distance_max, parallel_max, support_planarity_max; int32 reversed_edges")
 _FillOptions = _struct("gproj_fill_options", "int32 corner_count; pointer corners; int32 side_count; "
