@@ -598,7 +598,7 @@ typedef struct gproj_term {
 typedef struct gproj_progress {
     int32_t iteration;  /* the last one that began, from 1; 0: none has */
     int32_t iterations; /* the limit */
-    int32_t settling;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From
+    int32_t unguided;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From
                            2 on a refresh should not switch between pieces (of a curve), or it may do so for ever */
     bool tangential;    /* nearest: steps follow the constraints away from the start, and may be long */
     bool trial;         /* x is the end of a step that may still be taken back: the rows are to fit it, but what a
@@ -11367,7 +11367,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_set_weights(loop, n)) gproji_linearise(loop);
         guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_calm);
-        s->progress.settling = n <= half && guided ? 0 : s->progress.settling + 1;
+        s->progress.unguided = n <= half && guided ? 0 : s->progress.unguided + 1;
         loop->standing = gproji_take_standing(s);
         /* 2. The step, unless all is done. */
         if (gproji_holds(loop) && (!gproji_wishes_are_on(s) || /* nothing is wished, or nothing moves any more */
@@ -11860,7 +11860,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         if (gproji_is_out_of_time(loop)) return GPROJ_TIME_OUT;
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = iterations;
-        s->progress.settling = n <= half ? 0 : s->progress.settling + 1;
+        s->progress.unguided = n <= half ? 0 : s->progress.unguided + 1;
         if (n > last + 1 && loop->standing.residual > gproji_nearest_left * loop->watch.fallen)
             gproji_let_safeguards_yield(loop);
         loop->watch.fallen = loop->standing.residual;
@@ -11948,7 +11948,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
         return;
     }
     if (!loop->begun) {
-        s->progress.settling = 0;
+        s->progress.unguided = 0;
         s->yield = nearest ? GPROJI_YIELD_FLOOR : GPROJI_YIELD_SLOWLY;
         if (nearest) {
             gproji_see_nearest(loop);
@@ -12208,7 +12208,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_double(stream, &loop->watch.fallen, 0, HUGE_VAL);
     gproji_pass_integer(stream, &loop->watch.seen, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
-    gproji_pass_integer(stream, &s->progress.settling, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &s->progress.unguided, 0, INT32_MAX / 2);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
     if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
@@ -19407,7 +19407,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
                                             const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     gproji_gliding *gliding = (gproji_gliding *)part->data;
-    bool settled = progress->settling >= 2;
+    bool settled = progress->unguided >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
         const gproj_curve *curve = gproji_curve_at(part, i);

@@ -118,7 +118,7 @@ _LeastSquaresResult = _struct("gproj_least_squares_result", "least_squares_outco
                               "at_bounds; double residual, kkt; memory memory; size factor_bytes, work_bytes")
 _Schedule = _struct("gproj_schedule", "double weight, decay; int32 last")
 _Term = _struct("gproj_term", "int32 i, j; double a")
-_Progress = _struct("gproj_progress", "int32 iteration, iterations, settling; bool tangential, trial")
+_Progress = _struct("gproj_progress", "int32 iteration, iterations, unguided; bool tangential, trial")
 _Group = _struct("gproj_group", "string name; kind kind; bool global; place place; schedule schedule; "
                  "pointer refresh, refresh_user")
 _struct("gproj_group_info", "char[32] name; kind kind; place place; schedule schedule; int32 rows; double max, rms; "
