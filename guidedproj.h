@@ -1486,8 +1486,9 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    options->smooth (the command line's default) does more for meshes of any resolution:
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
      |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). This takes the smoothest
-     change that satisfies the linearised rows: meshes stay fair that way, and move farther for it. Nothing is biased:
-     no closeness is added. Forces are measured, too, if steps fail.
+     change that satisfies the linearised rows: meshes stay fair that way, and move farther for it. If nothing is wished
+     the way from the beginning of the solve is measured like that, as long as steps go well, so that it ends near the
+     smoothest change of all. No closeness is added. Forces are measured, too, if steps fail.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
@@ -7823,6 +7824,7 @@ struct gproj_system {
     int32_t variable_count;
     gproj_progress progress;
     double stiffness;      /* in steps: factor on the weights of metric groups; 0: they rest */
+    bool anchored;         /* metric groups measure the way from where the solve began, not the step alone */
     gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
     double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
     bool astray;           /* x is so far away that refreshed rows may overflow, */
@@ -8947,7 +8949,7 @@ GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
         }
         /* Large terms that cancel leave rounding: it would look like a residual. */
         if (size * DBL_EPSILON > s->rounding && size < 1e50) phi = gproji_row_value_precisely(g, row, s->x);
-        row->phi = g->role >= GPROJI_METRIC ? 0 : phi;
+        row->phi = g->role < GPROJI_METRIC || (g->role == GPROJI_METRIC && s->anchored) ? phi : 0;
         /* Bounds act if they are violated, or if they did in the last step: gproji_switch_bounds lets them go again.
            Safeguards go on only if they are touched. */
         if (g->role == GPROJI_SAFEGUARD)
@@ -10338,13 +10340,16 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    Steps are measured by |dx|, or in a norm of the owner's. Rows of metric groups (in a form: differences of the
    displacement along edges) add
        k^2 sum (w g'dx)^2,    k the stiffness
-   to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and draw to no place,
-   so they bias nothing and are no part of merit and residual. The stiffness k is 1 to 10 at the beginning and follows
-   the agreement of the model with the merit, as a trust region does: down to a tenth if they agree, up if a step fails
-   or falls short. Once it is small near a solution the metric rests and the last steps are Newton's. If such a step
-   fails the metric comes back and rests again only when a step lowers the merit tenfold; until then k may fall below
-   its least, with which steps would be too short and creep. A metric that is a brake (in a form: changes of forces)
-   acts with k (k - 1) instead, so only for k > 1, when steps fail.
+   to the model: the Levenberg-Marquardt method in that norm. They ask for small and smooth steps and are no part of
+   merit and residual. While all goes well they are anchored (where the owner says so): they measure the whole way from
+   the solve's beginning at x_0, k^2 sum (w g'(x - x_0 + dx))^2, so that the steps go to the least way and not each to
+   the least of its own. That draws back, and steps fall short of the model when constraints bend much: from the first
+   that does, or that leaves more than half of the merit, steps are measured alone and nothing is biased. The stiffness
+   k is 1 to 10 at the beginning and follows the agreement of the model with the merit, as a trust region does: down to
+   a tenth if they agree, up if a step fails or falls short. Once it is small near a solution the metric rests and the
+   last steps are Newton's. If such a step fails the metric comes back and rests again only when a step lowers the merit
+   tenfold; until then k may fall below its least, with which steps would be too short and creep. A metric that is a
+   brake (in a form: changes of forces) acts with k (k - 1) instead, so only for k > 1, when steps fail.
 
    An owner with local unknowns settles them after each step: normals that fit the new faces best say how flat these
    are, while normals that moved along with the step would show a rotation as a residual (Golub, Pereyra: The
@@ -10386,6 +10391,7 @@ static const double gproji_bound_enough = 0.1;
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
 static const double gproji_stiffness_finest = 1e-6; /* after the metric has rested in vain, */
 static const double gproji_stiffness_left = 0.1;    /* while steps leave more than this part of the merit */
+static const double gproji_anchor_left = 0.5; /* of the merit: steps that leave more are measured from x */
 static const double gproji_stiffness_ends = 1e-7;   /* residual below which stiffer steps are no help */
 static const double gproji_brake_most = 9;          /* of the stiffness above 1, for brakes */
 static const double gproji_calm = 1e-3;             /* residual below which wishes count as faded */
@@ -11159,8 +11165,20 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
 }
 
-/* Lets the first step of a solve have this stiffness. */
-GPROJI_INTERNAL void gproji_begin_stiff(gproj_system *s, double stiffness) { s->stiffness = stiffness; }
+/* Lets the first step of a solve have this stiffness; `anchored`: steps lead to the least way from here. */
+GPROJI_INTERNAL void gproji_begin_stiff(gproj_system *s, double stiffness, bool anchored) {
+    s->stiffness = stiffness;
+    s->anchored = anchored;
+}
+
+/* From now on metric groups measure steps alone. */
+GPROJI_INTERNAL void gproji_weigh_anchor(gproj_system *s) {
+    int32_t i, r;
+    if (!s->anchored) return;
+    s->anchored = false;
+    for (i = 0; i < s->group_count; ++i)
+        for (r = 0; s->group[i].role == GPROJI_METRIC && r < s->group[i].row_count; ++r) s->group[i].row[r].phi = 0;
+}
 
 /* After a good step: the stiffness of the next one. */
 GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
@@ -11169,6 +11187,7 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     bool is_short = loop->iteration.length < 1 || loop->trust.agreement < 0.25;
     int32_t i;
     if (!loop->stiff) return;
+    if (is_short || loop->trust.left > gproji_anchor_left) gproji_weigh_anchor(s);
     if (loop->trust.wary > 0) factor = gproji_fmax(factor, 0.5);
     if (loop->trust.failed) factor = 1;
     if (is_short) factor = 2;
@@ -11233,6 +11252,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_step_back(s);
             gproji_linearise(loop);
         }
+        gproji_weigh_anchor(s);
         gproji_start_bounds(s);
         /* 2. Stiffer steps, or a larger eps if stiffness is no help. */
         if (loop->stiff && loop->trust.factored && loop->standing.residual > gproji_stiffness_ends) {
@@ -12201,6 +12221,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_bool(stream, &loop->stiff);
     gproji_pass_integer(stream, &loop->trust.wary, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &s->stiffness, 0, DBL_MAX);
+    gproji_pass_bool(stream, &s->anchored);
     gproji_pass_bool(stream, &loop->trust.restless);
     gproji_pass_double(stream, &loop->trust.left, 0, HUGE_VAL);
     yield = gproji_pass_integer(stream, &yield, GPROJI_YIELD_SLOWLY, GPROJI_YIELD_LAST);
@@ -23207,6 +23228,18 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     }
 }
 
+/* Lets the metric's rows be 0 where the vertices are now. */
+GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
+    const double *x = gproj_system_values(form->system);
+    const gproji_group *g = gproji_group_at(form->system, group);
+    int32_t count = 3 * form->mesh->vertex_count, r;
+    for (r = 0; r < g->row_count; ++r) {
+        int32_t e = (r - count) / 3, k = (r - count) % 3;
+        double from = r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
+        gproji_place_row(form->system, group, r, g->row[r].weight, -from);
+    }
+}
+
 /* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more
    than it must; once steps fail, as with many forces at their bounds, they are braked, too. */
 GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
@@ -23315,7 +23348,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored;
     const gproji_part *part;
     int32_t guided, guiding;
     solve->on = solve->finished = false;
@@ -23337,6 +23370,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
     if (!gproji_form_ready(form)) goto failed;
     part = gproji_own_part(form, GPROJI_OWN_METRIC);
+    anchored = metric && beginning == gproji_beginnings && !gproji_has_active_wish(form);
+    if (anchored) gproji_anchor_metric(form, part->group);
     if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
     part = gproji_own_part(form, GPROJI_OWN_BRAKE);
     if (part)
@@ -23346,7 +23381,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
-    if (solve->loop.stiff) gproji_begin_stiff(form->system, beginning->stiffness);
+    if (solve->loop.stiff) gproji_begin_stiff(form->system, beginning->stiffness, anchored);
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
@@ -23607,7 +23642,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstH", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstI", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -23750,7 +23785,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'H'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'I'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

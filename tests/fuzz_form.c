@@ -356,14 +356,14 @@ static double gprojt_off_segment(const double *a, const double *b, const double 
     double low = 0, high = 1, q[3];
     int i, k;
     for (i = 0; i < 200; ++i) { /* by ternary search */
-        double at[2], far[2];
+        double at[2], beyond[2];
         int side;
         at[0] = low + (high - low) / 3, at[1] = high - (high - low) / 3;
         for (side = 0; side < 2; ++side) {
             for (k = 0; k < 3; ++k) q[k] = a[k] + at[side] * (b[k] - a[k]) - p[k];
-            far[side] = gprojt_dot3(q, q);
+            beyond[side] = gprojt_dot3(q, q);
         }
-        if (far[0] < far[1])
+        if (beyond[0] < beyond[1])
             high = at[1];
         else
             low = at[0];
@@ -390,7 +390,7 @@ static double gprojt_off_points(const gprojt_case *c, const double *p) {
     return off;
 }
 
-/* How far the vertices are from where the ask wants them, in the mesh's units. */
+/* How beyond the vertices are from where the ask wants them, in the mesh's units. */
 static double gprojt_off(const gprojt_case *c, const gprojt_ask *a) {
     double off = 0;
     int32_t v, i;
@@ -412,7 +412,7 @@ static double gprojt_off(const gprojt_case *c, const gprojt_ask *a) {
     return off;
 }
 
-/* How far edges are from their bounds, as the rows of gproj_add_length_bounds say it, in the mesh's units. */
+/* How beyond edges are from their bounds, as the rows of gproj_add_length_bounds say it, in the mesh's units. */
 static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     double off = 0;
     int32_t e;
@@ -467,21 +467,22 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     return gproj_system_error(s)->code == GPROJ_OK;
 }
 
-/* What may be refused: the Gauss image before planarity. */
-static void gprojt_check_refusal(const gproj_error *error) {
-    bool known = error->code == GPROJ_ERROR_STATE;
+/* What may be refused: the Gauss image before planarity, and vertices that were moved beyond 1e70 (`beyond`). */
+static void gprojt_check_refusal(const gproj_error *error, bool beyond) {
+    bool known = error->code == GPROJ_ERROR_STATE || (beyond && error->code == GPROJ_ERROR_NUMBER);
     if (!known) fprintf(stderr, "%s\n", error->message);
     GPROJT_MUST(known);
 }
 
 static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
     static const double tolerances[8] = {0, 0, 0, 1e-9, 1e-3, 0.4, -1, NAN}, epsilons[5] = {0, 0, 1e-3, 1, 1e-7};
-    int32_t iterations = gprojt_choose(c, 7), n = 3 * c->mesh->vertex_count;
+    int32_t iterations = gprojt_choose(c, 7), n = 3 * c->mesh->vertex_count, i;
     double *before = gprojt_keep(c->mesh);
     gproj_solve_options options;
     gproj_result result;
-    bool wrong;
+    bool wrong, beyond = false;
     int flags = gprojt_byte(c);
+    for (i = 0; i < n; ++i) beyond = beyond || fabs(before[i]) > 1e70;
     memset(&options, 0, sizeof options);
     options.tolerance = tolerances[gprojt_choose(c, 8)];
     options.epsilon = epsilons[gprojt_choose(c, 5)];
@@ -501,7 +502,7 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
         GPROJT_MUST(!wrong && gproj_form_error(c->form)->code == GPROJ_OK && !strstr(result.message, "nan"));
         GPROJT_MUST(result.residual >= 0 && result.step >= 0 && result.step < HUGE_VAL);
     }
-    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(gproj_form_error(c->form));
+    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(gproj_form_error(c->form), beyond);
     GPROJT_MUST(result.outcome != GPROJ_CONVERGED || (result.residual <= result.tolerance));
     if (result.outcome == GPROJ_CONVERGED) gprojt_check_converged(c, &result);
     free(before);

@@ -514,6 +514,32 @@ GPROJT_TEST(undamped_steps_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* 1e-80 x = 1, by a refresh whose coefficient is beyond all numbers at the solution. */
+static void gprojt_overflowing_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    double coefficient = 1e-80 * (1 + 1e300 * fabs(gproj_system_values(s)[0]));
+    (void)user, (void)progress;
+    gproj_system_set_row(s, group, 0, &coefficient, -1);
+}
+
+/* A refresh that has no numbers so far away ends no undamped solve: the step is taken back. */
+GPROJT_TEST(undamped_steps_to_rows_that_overflow) {
+    static const double x[1] = {0};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_group group;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&group, 0, sizeof group);
+    memset(&options, 0, sizeof options);
+    options.skip_damping = true, options.epsilon = 1e-90;
+    group.name = "far", group.schedule = gproj_keep(1), group.refresh = gprojt_overflowing_refresh;
+    gproj_system_add_group(s, &group);
+    gprojt_add_linear(s, 0, 0, 1, -1, 0);
+    result = gproj_system_solve(s, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && gproj_system_values(s)[0] == 0);
+    GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_OK);
+    gproj_system_destroy(s);
+}
+
 /* An undamped solve whose residual falls slowly, by 2 % a step, loses patience; but not where the last of these steps is the one
    that reaches the tolerance. */
 GPROJT_TEST(patience_ends_where_constraints_hold) {
@@ -1681,6 +1707,7 @@ int main(void) {
     GPROJT_RUN(rows_that_overflow);
     GPROJT_RUN(steps_that_overflow);
     GPROJT_RUN(undamped_steps_that_overflow);
+    GPROJT_RUN(undamped_steps_to_rows_that_overflow);
     GPROJT_RUN(patience_ends_where_constraints_hold);
     GPROJT_RUN(no_verdict_before_schedules_end);
     GPROJT_RUN(wishes_that_no_step_serves);

@@ -66,6 +66,63 @@ GPROJT_TEST(iterations_do_not_grow) {
     }
 }
 
+/* The square of the change from `before` in the norm that measures smooth steps: sum |d_i - d_j|^2 along edges + 0.15^2
+   sum |d_i|^2. */
+static double gprojt_change(const gproj_mesh *mesh, const double *before) {
+    double sum = 0;
+    int32_t e, i, k;
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) sum += pow(0.15 * (mesh->position[i] - before[i]), 2);
+    for (e = 0; e < mesh->edge_count; ++e)
+        for (k = 0; k < 3; ++k) {
+            int32_t a = 3 * mesh->origin[2 * e] + k, b = 3 * mesh->origin[2 * e + 1] + k;
+            sum += pow(mesh->position[a] - before[a] - (mesh->position[b] - before[b]), 2);
+        }
+    return sum;
+}
+
+/* The same as a wish, for the nearest mesh. */
+static void gprojt_wish_no_change(gproj_form *form, const gproj_mesh *mesh) {
+    int32_t group = gproj_add_rows(form, "change", GPROJ_WISH, GPROJ_PLACE_NONE, 1), e, i, k;
+    gproj_term term[2] = {{0, -1, 1}, {0, -1, -1}};
+    for (i = 0; i < 3 * mesh->vertex_count; ++i) {
+        term[0].i = i, term[0].a = 0.15;
+        gproj_form_add_row(form, group, 1, term, -0.15 * mesh->position[i], -1);
+    }
+    term[0].a = 1;
+    for (e = 0; e < mesh->edge_count; ++e)
+        for (k = 0; k < 3; ++k) {
+            term[0].i = 3 * mesh->origin[2 * e] + k, term[1].i = 3 * mesh->origin[2 * e + 1] + k;
+            gproj_form_add_row(form, group, 2, term, mesh->position[term[1].i] - mesh->position[term[0].i], -1);
+        }
+}
+
+/* Without wishes a smooth solve ends near the least change there is, which the nearest mesh in that norm tells. */
+GPROJT_TEST(changes_are_nearly_the_least) {
+    static const double waves[2] = {0.05, 0.1};
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gprojt_twisted(10, waves[i]);
+        double *before = gprojt_keep(mesh), change;
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK(gproj_solve(form, 200, &options).outcome == GPROJ_CONVERGED);
+        change = gprojt_change(mesh, before);
+        gproj_form_destroy(form);
+        gprojt_put_back(mesh, before);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gprojt_wish_no_change(form, mesh);
+        memset(&options, 0, sizeof options);
+        options.nearest = true;
+        GPROJT_CHECK(gproj_solve(form, 60, &options).outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(change < 1.01 * gprojt_change(mesh, before)); /* 1.03 and 1.1 if steps are measured alone */
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(before);
+    }
+}
+
 /* Compression under its own weight, the boundary fixed and supported. */
 static void gprojt_add_standing(gproj_form *form, const gproj_mesh *mesh) {
     gproj_loads loads;
@@ -1039,6 +1096,7 @@ GPROJT_TEST(drawn_late_without_memory) {
 
 int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
+    GPROJT_RUN(changes_are_nearly_the_least);
     GPROJT_RUN(corners_are_kept);
     GPROJT_RUN(corners_are_let_go);
     GPROJT_RUN(triangles_are_not_bent);
