@@ -10391,8 +10391,8 @@ static const double gproji_bound_enough = 0.1;
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
 static const double gproji_stiffness_finest = 1e-6; /* after the metric has rested in vain, */
 static const double gproji_stiffness_left = 0.1;    /* while steps leave more than this part of the merit */
-static const double gproji_anchor_left = 0.5; /* of the merit: steps that leave more are measured from x */
 static const double gproji_stiffness_ends = 1e-7;   /* residual below which stiffer steps are no help */
+static const double gproji_anchor_left = 0.5;       /* part of the merit: after a step that leaves more, no anchor */
 static const double gproji_brake_most = 9;          /* of the stiffness above 1, for brakes */
 static const double gproji_calm = 1e-3;             /* residual below which wishes count as faded */
 static const double gproji_shortest = 0.125;        /* part of a step whose local unknowns are settled */

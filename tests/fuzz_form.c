@@ -356,14 +356,14 @@ static double gprojt_off_segment(const double *a, const double *b, const double 
     double low = 0, high = 1, q[3];
     int i, k;
     for (i = 0; i < 200; ++i) { /* by ternary search */
-        double at[2], beyond[2];
+        double at[2], far[2];
         int side;
         at[0] = low + (high - low) / 3, at[1] = high - (high - low) / 3;
         for (side = 0; side < 2; ++side) {
             for (k = 0; k < 3; ++k) q[k] = a[k] + at[side] * (b[k] - a[k]) - p[k];
-            beyond[side] = gprojt_dot3(q, q);
+            far[side] = gprojt_dot3(q, q);
         }
-        if (beyond[0] < beyond[1])
+        if (far[0] < far[1])
             high = at[1];
         else
             low = at[0];
@@ -390,7 +390,7 @@ static double gprojt_off_points(const gprojt_case *c, const double *p) {
     return off;
 }
 
-/* How beyond the vertices are from where the ask wants them, in the mesh's units. */
+/* How far the vertices are from where the ask wants them, in the mesh's units. */
 static double gprojt_off(const gprojt_case *c, const gprojt_ask *a) {
     double off = 0;
     int32_t v, i;
@@ -412,7 +412,7 @@ static double gprojt_off(const gprojt_case *c, const gprojt_ask *a) {
     return off;
 }
 
-/* How beyond edges are from their bounds, as the rows of gproj_add_length_bounds say it, in the mesh's units. */
+/* How far edges are from their bounds, as the rows of gproj_add_length_bounds say it, in the mesh's units. */
 static double gprojt_off_bounds(const gproj_mesh *mesh, const gprojt_ask *a) {
     double off = 0;
     int32_t e;
