@@ -1626,7 +1626,8 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`): zeros, residual_vertex -1. */
+/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`; GPROJ_ERROR_NUMBER: they are
+   beyond all numbers): zeros, residual_vertex -1. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -21943,24 +21944,32 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 }
 
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
+    double *sum;
     int32_t v, c;
-    gproj_code code = gproj_get_loads(form, reactions, error);
+    gproj_code code = gproji_begin_question(form, "get reactions", reactions != NULL, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "get reactions", error);
     if (code) return code;
-    gproji_add_forces(form, form->mesh->position, NULL, reactions);
+    sum = form->statics->work;
+    gproj_get_loads(form, sum, NULL);
+    gproji_add_forces(form, form->mesh->position, NULL, sum);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         bool idle = form->mesh->vertex_halfedge[v] < 0;
         for (c = 0; c < 3; ++c) {
-            double *r = &reactions[3 * (size_t)v + (size_t)c];
+            double *r = &sum[3 * (size_t)v + (size_t)c];
             *r = idle || form->statics->axes[v] >> c & 1 ? 0 : -*r;
+            if (!gproji_is_finite(*r))
+                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v,
+                                   "the reaction of vertex %d is beyond all numbers; use a larger unit of force", v);
         }
     }
+    memcpy(reactions, sum, 3 * (size_t)form->mesh->vertex_count * sizeof *sum);
     return GPROJ_OK;
 }
 
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error) {
     gproj_forces m;
     const gproj_mesh *mesh;
-    double largest = 0, *sum;
+    double largest = 0, total = 0, *sum; /* total: not finite if any number is */
     int32_t e, v, c;
     bool first = true;
     memset(&m, 0, sizeof m);
@@ -22000,12 +22009,18 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
             given[c] = balanced ? 0 : sum[3 * (size_t)v + (size_t)c];
         }
         m.max_reaction = gproji_fmax(m.max_reaction, gproji_length3(given));
+        total += gproji_length3(left) + gproji_length3(given);
         if (!form->statics->axes[v]) continue;
         if (!(gproji_length3(left) > m.residual) && m.residual_vertex >= 0) continue;
         m.residual = gproji_length3(left);
         m.residual_vertex = v;
     }
     if (largest > 0) m.residual /= largest;
+    if (gproji_is_finite(m.load_path) && gproji_is_finite(total)) return m;
+    memset(&m, 0, sizeof m);
+    m.residual_vertex = -1;
+    gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                "measure forces: they are beyond all numbers; use a larger unit of force");
     return m;
 }
 
@@ -22570,7 +22585,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
     size_t length = strlen(result->message);
     double phi[3] = {0, 0, 0};
-    char others[48];
+    char others[48], most[64];
     int32_t vertex[3] = {-1, -1, -1}, r, k;
     const gproji_group *g;
     gproj_forces forces;
@@ -22590,9 +22605,12 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     }
     gproji_format(others, sizeof others, "vertex ");
     if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
+    most[0] = 0;
+    if (forces.residual_vertex >= 0)
+        gproji_format(most, sizeof most, " by up to %g of the largest load", forces.residual);
     gproji_format(result->message + length, sizeof result->message - length,
-                  "; no %sequilibrium%s was found near this shape: %s%d out of balance by up to %g of the largest load",
-                  kind, planar, others, vertex[0], forces.residual);
+                  "; no %sequilibrium%s was found near this shape: %s%d out of balance%s", kind, planar, others,
+                  vertex[0], most);
     return true;
 }
 

@@ -31,6 +31,7 @@ typedef struct gprojt_case {
     gprojt_ask ask[GPROJT_ASKS];
     int asks;
     bool cancel;
+    bool beyond; /* a point of the bytes has a coordinate beyond 1e70 */
     gproj_loads loads;
     double *density, *point_load, *forces; /* as many as edges, coordinates, edges */
 } gprojt_case;
@@ -83,7 +84,10 @@ static void gprojt_point_of_bytes(gprojt_case *c, double out[3]) {
     double edge = gproj_mesh_mean_edge_length(c->mesh);
     int k;
     memcpy(out, c->mesh->position + 3 * gprojt_choose(c, c->mesh->vertex_count), 3 * sizeof *out);
-    for (k = 0; k < 3; ++k) out[k] += edge * (gprojt_byte(c) - 128) / 128;
+    for (k = 0; k < 3; ++k) {
+        out[k] += edge * (gprojt_byte(c) - 128) / 128;
+        c->beyond = c->beyond || fabs(out[k]) > 1e70;
+    }
 }
 
 static void gprojt_curve_of_bytes(gprojt_case *c) {
@@ -467,22 +471,21 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     return gproj_system_error(s)->code == GPROJ_OK;
 }
 
-/* What may be refused: the Gauss image before planarity, and vertices that were moved beyond 1e70 (`beyond`). */
-static void gprojt_check_refusal(const gproj_error *error, bool beyond) {
-    bool known = error->code == GPROJ_ERROR_STATE || (beyond && error->code == GPROJ_ERROR_NUMBER);
+/* What may be refused: the Gauss image before planarity, and vertices and targets that were moved beyond 1e70. */
+static void gprojt_check_refusal(const gprojt_case *c, const gproj_error *error) {
+    bool known = error->code == GPROJ_ERROR_STATE || (c->beyond && error->code == GPROJ_ERROR_NUMBER);
     if (!known) fprintf(stderr, "%s\n", error->message);
     GPROJT_MUST(known);
 }
 
 static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
     static const double tolerances[8] = {0, 0, 0, 1e-9, 1e-3, 0.4, -1, NAN}, epsilons[5] = {0, 0, 1e-3, 1, 1e-7};
-    int32_t iterations = gprojt_choose(c, 7), n = 3 * c->mesh->vertex_count, i;
+    int32_t iterations = gprojt_choose(c, 7), n = 3 * c->mesh->vertex_count;
     double *before = gprojt_keep(c->mesh);
     gproj_solve_options options;
     gproj_result result;
-    bool wrong, beyond = false;
+    bool wrong;
     int flags = gprojt_byte(c);
-    for (i = 0; i < n; ++i) beyond = beyond || fabs(before[i]) > 1e70;
     memset(&options, 0, sizeof options);
     options.tolerance = tolerances[gprojt_choose(c, 8)];
     options.epsilon = epsilons[gprojt_choose(c, 5)];
@@ -502,7 +505,7 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
         GPROJT_MUST(!wrong && gproj_form_error(c->form)->code == GPROJ_OK && !strstr(result.message, "nan"));
         GPROJT_MUST(result.residual >= 0 && result.step >= 0 && result.step < HUGE_VAL);
     }
-    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(gproj_form_error(c->form), beyond);
+    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(c, gproj_form_error(c->form));
     GPROJT_MUST(result.outcome != GPROJ_CONVERGED || (result.residual <= result.tolerance));
     if (result.outcome == GPROJ_CONVERGED) gprojt_check_converged(c, &result);
     free(before);

@@ -1016,6 +1016,8 @@ GPROJT_TEST(forces_beyond_all_numbers) {
     double *load = gprojt_numbers(3 * mesh->vertex_count);
     gproj_loads loads = gprojt_no_loads();
     gproj_form *form;
+    gproj_forces forces;
+    gproj_result result;
     gproj_error error;
     int32_t e, v, carrying = -1;
     loads.density = 1;
@@ -1029,8 +1031,22 @@ GPROJT_TEST(forces_beyond_all_numbers) {
     GPROJT_CHECK(gproj_get_forces(form, w, &error) == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && error.index == carrying);
     for (e = 0; e < mesh->edge_count; ++e) GPROJT_CHECK(w[e] == -1);
+    for (v = 0; v < 3 * mesh->vertex_count; ++v) load[v] = -1;
+    GPROJT_CHECK(gproj_get_reactions(form, load, &error) == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && load[3 * error.index] == -1 && load[0] == -1);
+    forces = gproj_measure_forces(form, &error);
+    GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER && forces.residual_vertex == -1 && forces.max_force == 0);
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
     gproj_form_destroy(form);
+
+    /* a verdict goes without what no number can tell */
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1e308;
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
+    result = gproj_solve(form, 0, NULL);
+    GPROJT_CHECK(strstr(result.message, "out of balance") && !strstr(result.message, "of the largest load"));
+    gproj_form_destroy(form);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = -1;
 
     /* large loads on edges of next to no length */
     for (v = 0; v < 3 * mesh->vertex_count; ++v) mesh->position[v] *= 1e-200, load[v] = v % 3 == 2 ? -1e150 : 0;

@@ -2305,12 +2305,13 @@ static bool measure_imbalance(tool *t, double *of_faces) {
 
 static bool measure_forces(tool *t) {
     const gproj_mesh *mesh = t->mesh;
+    gproj_error error;
     int32_t e, k;
     t->density_of_edge = (double *)take(t, (size_t)mesh->edge_count, sizeof *t->density_of_edge);
     t->force_in_edge = (double *)take(t, (size_t)mesh->edge_count, sizeof *t->force_in_edge);
     t->imbalance = (double *)take(t, (size_t)mesh->face_count, sizeof *t->imbalance);
     if (!t->density_of_edge || !t->force_in_edge || !t->imbalance) return false;
-    gproj_get_forces(t->form, t->density_of_edge, NULL);
+    if (gproj_get_forces(t->form, t->density_of_edge, &error)) return fail_library(t, NULL, &error);
     for (e = 0; e < mesh->edge_count; ++e) {
         const double *a = mesh->position + 3 * (size_t)mesh->origin[2 * e],
                      *b = mesh->position + 3 * (size_t)mesh->origin[2 * e + 1];
@@ -2318,7 +2319,8 @@ static bool measure_forces(tool *t) {
         for (k = 0; k < 3; ++k) square += (a[k] - b[k]) * (a[k] - b[k]);
         t->force_in_edge[e] = t->density_of_edge[e] * sqrt(square);
     }
-    t->forces = gproj_measure_forces(t->form, NULL);
+    t->forces = gproj_measure_forces(t->form, &error);
+    if (error.code) return fail_library(t, NULL, &error);
     if (t->imbalance_before && !measure_imbalance(t, t->imbalance)) return false;
     return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
