@@ -775,7 +775,7 @@ GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t grou
    to the largest entry of that row's gradient and at least 1. About 1e-9 is right, 1e-3 is a wrong gradient. */
 GPROJ_API double gproj_system_check_gradients(gproj_system *system);
 
-/* Takes at most `iterations` steps. `options` may be NULL. */
+/* Takes at most `iterations` steps, none longer than 1e70. `options` may be NULL. */
 GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iterations, const gproj_solve_options *options);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -7828,8 +7828,6 @@ struct gproj_system {
     bool anchored;         /* metric groups measure the way from where the solve began, not the step alone */
     gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
     double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
-    bool astray;           /* x is so far away that refreshed rows may overflow, */
-    bool overflowed;       /* and one has: the step will be taken back */
     double *x;
     gproji_blocks blocks;
     gproji_group *group;
@@ -8417,10 +8415,6 @@ GPROJ_API gproj_code gproj_system_set_row(gproj_system *s, int32_t group, int32_
     g = &s->group[group];
     count = g->row[row].terms;
     for (t = 0; coefficients && t < count; ++t) finite &= gproji_is_finite(coefficients[t]);
-    if (!finite && s->astray) {
-        s->overflowed = true;
-        return GPROJ_ERROR_NUMBER;
-    }
     if (!finite)
         return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, row,
                            "row %d of group '%s' was given a coefficient that is not a finite number", row, g->name);
@@ -10396,6 +10390,7 @@ static const double gproji_stiffness_ends = 1e-7;   /* residual below which stif
 static const double gproji_anchor_left = 0.5;       /* part of the merit: after a step that leaves more, no anchor */
 static const double gproji_brake_most = 9;          /* of the stiffness above 1, for brakes */
 static const double gproji_calm = 1e-3;             /* residual below which wishes count as faded */
+static const double gproji_step_most = 1e70;        /* longer ones lead to where squared areas overflow */
 static const double gproji_shortest = 0.125;        /* part of a step whose local unknowns are settled */
 /* A residual below the first that keeps more than the second part of itself from one look to the next creeps. */
 static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
@@ -11135,7 +11130,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         bool violated, again, guard;
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(s, 1);
-        if (!(loop->iteration.step <= DBL_MAX)) return false;
+        if (!(loop->iteration.step <= gproji_step_most)) return false;
         gproji_settle(loop);
         violated = loop->hooks.inspect && violations < GPROJI_VIOLATIONS &&
                    loop->hooks.inspect(loop->hooks.user, s->vector.saved, s->x);
@@ -11208,9 +11203,6 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     }
 }
 
-/* Steps beyond this lead to where squared areas overflow. */
-#define GPROJI_ASTRAY 1e70
-
 /* One iteration from a linearised x to the next. False when no trial was good; x is then as before. */
 GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11239,10 +11231,8 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
             gproji_settle(loop);
         } /* else x is there */
         gproji_lap(loop, GPROJ_PHASE_REFRESH);
-        s->astray = loop->iteration.step > GPROJI_ASTRAY, s->overflowed = false;
         if (stepped) gproji_linearise(loop);
-        s->astray = false;
-        if (stepped && !s->overflowed && loop->standing.merit <= DBL_MAX) {
+        if (stepped && loop->standing.merit <= DBL_MAX) {
             loop->trust.left = before.merit > 0 ? loop->standing.merit / before.merit : 0;
             if (!gproji_wishes_are_on(s) && before.residual < gproji_epsilon_max &&
                 loop->standing.residual > 0.5 * before.residual)
@@ -11775,7 +11765,7 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     int32_t i, r;
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
-        if (!(loop->iteration.step <= DBL_MAX)) break;
+        if (!(loop->iteration.step <= gproji_step_most)) break;
         gproji_retract(s);
         after = gproji_lagrangian(s, s->x, NULL);
         if (!(after <= DBL_MAX)) continue;
