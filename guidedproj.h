@@ -8041,15 +8041,14 @@ GPROJ_API int32_t gproj_system_variable_count(const gproj_system *s) { return s 
 GPROJ_API double *gproj_system_values(gproj_system *s) { return s ? s->x : NULL; }
 GPROJ_API int32_t gproj_system_group_count(const gproj_system *s) { return s ? s->group_count : 0; }
 
-GPROJI_INTERNAL gproj_schedule gproji_make_schedule(double weight, int32_t last) {
+GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) {
     gproj_schedule schedule;
     schedule.weight = weight, schedule.decay = 1, schedule.last = last;
     return schedule;
 }
 
-GPROJ_API gproj_schedule gproj_keep(double weight) { return gproji_make_schedule(weight, INT32_MAX); }
-GPROJ_API gproj_schedule gproj_fade(double weight, int32_t last) { return gproji_make_schedule(weight, last); }
-GPROJ_API gproj_schedule gproj_guide(double weight) { return gproji_make_schedule(weight, GPROJ_LAST_GUIDING); }
+GPROJ_API gproj_schedule gproj_keep(double weight) { return gproj_fade(weight, INT32_MAX); }
+GPROJ_API gproj_schedule gproj_guide(double weight) { return gproj_fade(weight, GPROJ_LAST_GUIDING); }
 
 /* Refuses a schedule for the group with this name if it is not valid. */
 GPROJI_INTERNAL gproj_code gproji_check_schedule(gproj_system *s, const char *name, gproj_schedule schedule) {
@@ -10075,14 +10074,6 @@ GPROJI_INLINE bool gproji_schur_has_own(const gproj_system *s) {
     return s->schur.own_start[0] < s->schur.own_start[s->nodes.count];
 }
 
-/* w'x at a node with any size; apart, so that it takes no registers from nodes with three variables. */
-GPROJI_INTERNAL double gproji_schur_product(const double *w, const double *x, int32_t size) {
-    double sum = 0;
-    int32_t k;
-    for (k = 0; k < size; ++k) sum += w[k] * x[k];
-    return sum;
-}
-
 /* side = a + W x at the multipliers in elements e .. end - 1. */
 GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_t end, const double *a, const double *x,
                                         double *side) {
@@ -10098,7 +10089,7 @@ GPROJI_INTERNAL void gproji_schur_times(const gproj_system *s, int32_t e, int32_
             for (; v < last; ++v, ++value) {
                 int32_t at = node_first[*v], size = node_first[*v + 1] - at;
                 const double *w = d->w.value + *value + (ptrdiff_t)j * size;
-                sum += size == 3 ? gproji_dot3(w, x + at) : gproji_schur_product(w, x + at, size);
+                sum += size == 3 ? gproji_dot3(w, x + at) : gproji_dot(w, x + at, (size_t)size);
             }
             side[first + j] = sum;
         }
@@ -18670,7 +18661,7 @@ typedef enum gproji_own {
 /* What a constraint or wish does besides having rows; NULL: nothing. */
 typedef struct gproji_acts {
     gproj_refresh refresh; /* linearises the rows at x before each iteration; user: the part */
-    /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. */
+    /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. NULL: settles them. */
     void (*start)(gproji_part *part);
     /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of
        smooth solves with planar faces. */
@@ -20311,11 +20302,7 @@ GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int
     }
 }
 
-GPROJI_INTERNAL void gproji_start_cones(gproji_part *part) {
-    gproji_settle_cones(part, gproj_system_values(part->form->system), 0, part->count);
-}
-
-static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, gproji_start_cones, gproji_settle_cones, NULL};
+static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, NULL, gproji_settle_cones, NULL};
 static const gproji_rule gproji_conicality_rule = {"conicality",    GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_conicality_acts};
 
@@ -20358,7 +20345,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
             h = gproji_rotate(mesh, h);
         } while (h != start);
     }
-    if (gproji_form_ready(form)) gproji_start_cones(part);
+    if (gproji_form_ready(form)) gproji_settle_cones(part, gproj_system_values(form->system), 0, part->count);
     return gproji_built(form, part->group);
 }
 
@@ -23155,8 +23142,13 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     for (i = 0; i < form->mesh->vertex_count; ++i)
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, x + 3 * (size_t)i);
     gproji_update_areas(form);
-    for (part = form->part; part; part = part->next)
-        if (part->rule->acts && part->rule->acts->start) part->rule->acts->start(part);
+    for (part = form->part; part; part = part->next) {
+        const gproji_acts *acts = part->rule->acts;
+        if (acts && acts->start)
+            acts->start(part);
+        else if (acts && acts->settle)
+            acts->settle(part, x, 0, part->count);
+    }
 }
 
 /* The mesh's positions = x; a vertex that is where it was `before` keeps its coordinates to the bit. */
@@ -23243,7 +23235,8 @@ GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
     int32_t count = 3 * form->mesh->vertex_count, r;
     for (r = 0; r < g->row_count; ++r) {
         int32_t e = (r - count) / 3, k = (r - count) % 3;
-        double from = r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
+        double from =
+            r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
         gproji_place_row(form->system, group, r, g->row[r].weight, -from);
     }
 }
