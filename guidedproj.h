@@ -1272,7 +1272,8 @@ typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it: destroy the mesh after the form. A NULL mesh gives a
    form whose error says so; so do positions that are not finite or beyond 1e70, here, at each solve, and as targets,
-   and a mean edge length between 0 and 1e-305. */
+   vertices that are more than 1e20 mean edge lengths away from the mesh that the form began with, and a mean edge
+   length between 0 and 1e-305. */
 GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host);
 GPROJ_API void gproj_form_destroy(gproj_form *form); /* NULL does nothing, as with all destroy functions */
 GPROJ_API const gproj_error *gproj_form_error(const gproj_form *form);
@@ -18802,8 +18803,12 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
     for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
 }
 
-/* Refuses coordinates, which the caller may have written, that are not finite, or so large that their products would
-   not be, in the mesh's units or in the form's. */
+/* Vertices are at most so many mean edge lengths away from the mesh that the form began with: loads, prices and moments
+   of those that are farther have no digits left for the others. */
+static const double gproji_farthest = 1e20;
+
+/* Refuses coordinates, which the caller may have written, that are not finite or too large, in the mesh's units or in
+   the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_error *error) {
     int32_t i, k;
     if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
@@ -18811,10 +18816,10 @@ GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_e
     for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
         gproji_to_internal(form, form->mesh->position + 3 * (size_t)i, p);
-        for (k = 0; k < 3 && fabs(p[k]) <= GPROJI_COORDINATE_MAX;) ++k;
+        for (k = 0; k < 3 && fabs(p[k]) <= gproji_farthest;) ++k;
         if (k == 3) continue;
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i,
-                           "vertex %d is more than 1e70 mean edge lengths away from the mesh that the form began with",
+                           "vertex %d is more than 1e20 mean edge lengths away from the mesh that the form began with",
                            i) == GPROJ_OK;
     }
     return true;
@@ -18854,7 +18859,9 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     form->work.term = (gproj_term *)gproji_pool_take(pool, (int64_t)ring + 1, 3 * sizeof *form->work.term);
     form->system = gproj_system_create(&form->host);
     if (pool->failed || !form->system) gproji_fail_memory(&form->error);
-    if (form->error.code || !gproji_positions_are_finite(form, &form->error)) return form;
+    if (form->error.code ||
+        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", &form->error))
+        return form;
     /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
        the digits of all coordinates. */
     first = mesh->edge_count ? mesh->origin[0] : 0;
@@ -23394,8 +23401,7 @@ failed:
     return false;
 }
 
-/* Has the solve led beyond the coordinates that a mesh may have? Then these are not written, and the solve has
-   ended. */
+/* Has the solve led farther than vertices may be? Then their positions are not written, and the solve has ended. */
 GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     const double *x = gproj_system_values(form->system);
     gproj_result *result = &form->solve.loop.result;
@@ -23404,7 +23410,8 @@ GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     for (i = 0; i < form->mesh->vertex_count && !beyond; ++i) {
         double p[3];
         gproji_from_internal(form, x + 3 * (size_t)i, p);
-        for (k = 0; k < 3; ++k) beyond = beyond || !(fabs(p[k]) <= GPROJI_COORDINATE_MAX);
+        for (k = 0; k < 3; ++k)
+            beyond = beyond || !(fabs(x[3 * i + k]) <= gproji_farthest && fabs(p[k]) <= GPROJI_COORDINATE_MAX);
     }
     if (!beyond) return false;
     form->solve.on = false, form->solve.finished = true;
@@ -23412,8 +23419,8 @@ GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
     result->outcome = GPROJ_STALLED;
     gproji_format(
         result->message, sizeof result->message,
-        "the steps have led beyond coordinates of 1e70, so the mesh is left where it was: ask for less, or fix "
-        "vertices");
+        "the steps have led beyond coordinates of 1e70 or 1e20 mean edge lengths, so the mesh is left where it was: "
+        "ask for less, or fix vertices");
     return true;
 }
 

@@ -471,9 +471,15 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     return gproj_system_error(s)->code == GPROJ_OK;
 }
 
-/* What may be refused: the Gauss image before planarity, and vertices and targets that were moved beyond 1e70. */
+/* What may be refused: the Gauss image before planarity, and vertices and targets that are too far away. */
 static void gprojt_check_refusal(const gprojt_case *c, const gproj_error *error) {
-    bool known = error->code == GPROJ_ERROR_STATE || (c->beyond && error->code == GPROJ_ERROR_NUMBER);
+    double centre[3], scale;
+    bool known = error->code == GPROJ_ERROR_STATE, beyond = c->beyond;
+    int32_t i;
+    gproj_form_units(c->form, centre, &scale);
+    for (i = 0; i < 3 * c->mesh->vertex_count; ++i)
+        beyond = beyond || scale * fabs(c->mesh->position[i] - centre[i % 3]) > 1e20;
+    known = known || (beyond && error->code == GPROJ_ERROR_NUMBER);
     if (!known) fprintf(stderr, "%s\n", error->message);
     GPROJT_MUST(known);
 }

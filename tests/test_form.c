@@ -2972,6 +2972,27 @@ GPROJT_TEST(beyond_all_coordinates) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A vertex that is moved by 1e20 mean edge lengths may stay there, and none farther: neither by the caller, who is told
+   which, nor by steps. */
+GPROJT_TEST(vertices_far_from_the_mesh) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(1));
+    double edge = gproj_mesh_mean_edge_length(mesh), *before = gprojt_keep(mesh);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    mesh->position[7] = 0.9e20 * edge;
+    GPROJT_CHECK(gproj_solve(form, 0, NULL).outcome != GPROJ_FAILED);
+    memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof *before);
+    gproj_add_volume(form, 1e70 * gproj_volume(mesh), 1);
+    result = gproj_solve(form, 60, NULL);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && strstr(result.message, "1e20 mean edge lengths"));
+    GPROJT_CHECK(gprojt_unmoved(mesh, before) && gproj_form_error(form)->code == GPROJ_OK);
+    mesh->position[7] = 1.1e20 * edge;
+    GPROJT_CHECK(gproj_solve(form, 0, NULL).outcome == GPROJ_FAILED && gproj_form_error(form)->index == 2);
+    free(before);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A square with corners at the largest coordinates that there are, 1e70, and edges of 2^200, so that nothing is rounded: it
    may stay there. */
 GPROJT_TEST(at_the_largest_coordinates) {
@@ -3082,6 +3103,7 @@ int main(void) {
     GPROJT_RUN(every_allocation_of_builders_fails_once);
     GPROJT_RUN(no_allocation_in_a_second_solve);
     GPROJT_RUN(beyond_all_coordinates);
+    GPROJT_RUN(vertices_far_from_the_mesh);
     GPROJT_RUN(at_the_largest_coordinates);
     return gprojt_report();
 }
