@@ -8229,9 +8229,9 @@ GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
     g->row = (gproji_row *)gproji_grow(&s->heap, g->row, &room->row, rows, sizeof *g->row);
     g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &room->term, terms, sizeof *g->term);
     g->local.variable = (int32_t *)gproji_grow(&s->heap, g->local.variable, &room->local, locals, sizeof(int32_t));
-    /* Without an error `share` has as much room as `row`. */
-    if (g->share) g->share = (gproji_share *)gproji_grow(&s->heap, g->share, &room->share, rows, sizeof *g->share);
-    return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= rows);
+    /* Without an error `share` has no less room than `row`, which may have been trimmed in between. */
+    if (g->share) g->share = (gproji_share *)gproji_grow(&s->heap, g->share, &room->share, room->row, sizeof *g->share);
+    return room->row >= rows && room->term >= terms && room->local >= locals && (!g->share || room->share >= room->row);
 }
 
 /* Makes this room, or fails. */

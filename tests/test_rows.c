@@ -357,6 +357,30 @@ GPROJT_TEST(rows_after_weights_of_elements) {
     free(weight);
 }
 
+/* The same after a solve, for which rows have given spare room back: weights keep theirs, and have too little later on if
+   that is not seen. */
+GPROJT_TEST(rows_after_weights_and_a_solve) {
+    static const double none[3] = {0, 0, 0};
+    int32_t first;
+    for (first = 3; first < 40; first += 4) {
+        gproj_mesh *mesh = gprojt_cap(6, 1, none);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        int32_t group = gproj_add_rows(form, "heights", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), r, vertex = 1;
+        double weight = 2;
+        for (r = 0; r < 100; ++r) {
+            gproj_term z = gprojt_term(3 * (r % mesh->vertex_count) + 2, -1, 1);
+            gproj_form_add_row(form, group, 1, &z, -0.01 * (r % mesh->vertex_count), r % mesh->vertex_count);
+            if (r != first) continue;
+            GPROJT_CHECK(gproj_set_element_weights(form, group, 1, &vertex, &weight) == GPROJ_OK);
+            GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
+        }
+        for (r = 0; r < 100; ++r) GPROJT_CHECK(gprojt_inside_row_weight(form, group, r) == (r == 1 ? 2 : 1));
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Each wrong call says what is wrong. */
 GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
@@ -617,6 +641,7 @@ int main(void) {
     GPROJT_RUN(residuals_by_edge);
     GPROJT_RUN(rows_of_no_element);
     GPROJT_RUN(rows_after_weights_of_elements);
+    GPROJT_RUN(rows_after_weights_and_a_solve);
     GPROJT_RUN(wrong_rows_are_refused);
     GPROJT_RUN(unknowns_refused);
     GPROJT_RUN(groups_have_their_own_unknowns);
