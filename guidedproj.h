@@ -1602,7 +1602,8 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
 /* The loads on the mesh as it is now, 3 * vertex_count numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error);
-/* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. */
+/* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. All
+   are 0 if one is beyond all numbers (GPROJ_ERROR_NUMBER). */
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error);
 
 /* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
@@ -21928,26 +21929,22 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 }
 
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
-    double *sum;
-    int32_t v, c;
-    gproj_code code = gproji_begin_question(form, "get reactions", reactions != NULL, error);
-    if (code == GPROJ_OK) code = gproji_need_statics(form, "get reactions", error);
+    int32_t v, c, wrong = -1;
+    gproj_code code = gproj_get_loads(form, reactions, error);
     if (code) return code;
-    sum = form->statics->work;
-    gproj_get_loads(form, sum, NULL);
-    gproji_add_forces(form, form->mesh->position, NULL, sum);
+    gproji_add_forces(form, form->mesh->position, NULL, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         bool idle = form->mesh->vertex_halfedge[v] < 0;
         for (c = 0; c < 3; ++c) {
-            double *r = &sum[3 * (size_t)v + (size_t)c];
+            double *r = &reactions[3 * (size_t)v + (size_t)c];
             *r = idle || form->statics->axes[v] >> c & 1 ? 0 : -*r;
-            if (!gproji_is_finite(*r))
-                return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v,
-                                   "the reaction of vertex %d is beyond all numbers; use a larger unit of force", v);
+            if (!gproji_is_finite(*r)) wrong = v;
         }
     }
-    memcpy(reactions, sum, 3 * (size_t)form->mesh->vertex_count * sizeof *sum);
-    return GPROJ_OK;
+    if (wrong < 0) return GPROJ_OK;
+    memset(reactions, 0, 3 * (size_t)form->mesh->vertex_count * sizeof *reactions);
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, wrong,
+                       "the reaction of vertex %d is beyond all numbers; use a larger unit of force", wrong);
 }
 
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error) {
