@@ -18804,8 +18804,8 @@ GPROJI_INTERNAL void gproji_from_internal(const gproj_form *form, const double x
     for (k = 0; k < 3; ++k) out[k] = form->centre[k] + x[k] / form->scale;
 }
 
-/* Vertices are at most so many mean edge lengths away from the mesh that the form began with: loads, prices and moments
-   of those that are farther have no digits left for the others. */
+/* Vertices are at most so many mean edge lengths away from the mesh that the form began with: products of two such
+   lengths are within the 1e50 of >>least-squares, which begins the forces. */
 static const double gproji_farthest = 1e20;
 
 /* Refuses coordinates, which the caller may have written, that are not finite or too large, in the mesh's units or in
