@@ -306,7 +306,8 @@ GPROJ_API int32_t gproj_version(void);
 /* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
    be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
    copies, or never gives back (an arena). `limit` > 0: an object that would hold more than `limit` bytes fails
-   with GPROJ_ERROR_MEMORY instead. */
+   with GPROJ_ERROR_MEMORY instead. A form, its system, the factorisation in that, each copy of a curve in the form and a
+   drag are objects of their own here. */
 typedef struct gproj_allocator {
     void *(*allocate)(void *user, size_t size);
     void *(*reallocate)(void *user, void *block, size_t old_size, size_t new_size);
@@ -527,7 +528,8 @@ typedef struct gproj_least_squares_result {
     /* Optimality (Karush, Kuhn, Tucker): x is exactly within the bounds, and each entry of the gradient g = A'(A x - b)
        + damping^2 x is 0 for a variable between its bounds, >= 0 at a lower and <= 0 at an upper bound. kkt is the
        largest violation, divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y| for the y nearest to 0
-       within the bounds; both in units of the variables that give the columns of A length 1. */
+       within the bounds; both in units of the variables that give the columns of A length 1 (those shorter than 1e-30 of
+       the longest count as empty). */
     double kkt;
     gproj_memory memory; /* without the factorisation's: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
@@ -651,7 +653,7 @@ typedef enum gproj_phase {
 
 typedef enum gproj_outcome {
     GPROJ_CONVERGED,       /* all constraints hold to the tolerance */
-    GPROJ_ITERATION_LIMIT, /* the iterations ran out before all constraints held */
+    GPROJ_ITERATION_LIMIT, /* the iterations ran out before all constraints held; nearest: or before a minimum */
     GPROJ_STALLED,         /* no step makes the constraints hold better */
     GPROJ_CANCELLED,       /* by the caller */
     GPROJ_TIME_OUT,        /* the time budget ran out */
@@ -883,8 +885,9 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 GPROJ_API gproj_mesh *gproj_mesh_load(const char *path, const gproj_host *host, gproj_error *error);
 /* Replaces the file at `path`, or a symbolic link's target, whole or not at all, even if the program or the machine
    stops meanwhile: writes a new file, gproj-########.tmp in the same folder, flushes it to the disk and renames it. An
-   existing file's permissions are kept (POSIX). Folders, devices and pipes are refused. The format follows the ending:
-   .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260 characters there. */
+   existing file's permissions are kept (POSIX; those of its group, if that can be kept). Folders, devices and pipes are
+   refused. The format follows the ending: .obj or .off. Paths are UTF-8 on Windows, and may be longer than 260
+   characters there. */
 GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, gproj_error *error);
 #endif
 
@@ -1230,7 +1233,7 @@ typedef struct gproj_fill_options {
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
     bool keep_points;            /* the curve's points are the boundary vertices, whatever is wanted */
     int32_t rings;               /* rows of quads around along the whole boundary */
-    int32_t variant; /* 0: the fewest irregular vertices; 1, 2, ..: other combinatorics, while there are any */
+    int32_t variant;             /* 0: the fewest irregular vertices; 1, 2, ..: other cuts, while there are any */
 } gproj_fill_options;
 
 /* Properties of the mesh that was made. */
@@ -1254,8 +1257,9 @@ typedef struct gproj_fill_info {
    short, with good angles, and so that the patches need few irregular vertices. Valence 6 is taken if this leaves
    nothing better.
    `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for
-   a side: the first one): curves that meet themselves or enclose no area, corners out of order, numbers of edges
-   below 1 or with an odd sum (the sentence says how to change them), and curves for which no filling was found. */
+   a side: the first one): curves that meet themselves, corners out of order, numbers of edges below 1 or with an odd
+   sum (the sentence says how to change them). Also refused: curves that enclose no area, or for which no filling was
+   found. */
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error);
 
@@ -1466,7 +1470,8 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from the end of the first, or from the positions that you have set since. Positions are written
-   back however the solve ends, but for an error (GPROJ_FAILED), which leaves the mesh as it was. At the beginning
+   back however the solve ends, but for an error (GPROJ_FAILED) and steps farther than vertices may be, which leave the
+   mesh as it was. At the beginning
    vertices, normals, axes and the unknowns of gproj_form_add_unknowns get their values anew; variables of
    gproj_system_add_variables, and the forces of an earlier solve, keep theirs. "The original" for fixed vertices,
    gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish guides, closeness to
@@ -1527,7 +1532,8 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
    the state of the solve: GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations,
    schedules and, in the end, the bytes are those of one gproj_solve. Between two frames weights may be changed and
    targets moved; vertices are moved by targets, or before another gproj_solve_begin: positions are only written.
-   gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin.
+   gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin
+   (in a callback none of them does: return false there).
    If groups or rows were added in between it fails. After a failure, such as seconds without a clock in the host, or an
    error of the form, it is no longer on. options->time_budget counts the seconds inside all frames. */
 GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gproj_solve_options *options,
@@ -1600,7 +1606,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 /* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
 GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge);
-/* The loads on the mesh as it is now, 3 * vertex_count numbers. */
+/* The loads on the mesh as it is now, 3 * vertex_count numbers; all are 0 if one is beyond all numbers. */
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error);
 /* The supports' reactions, 3 * vertex_count numbers: -(sum_j w_ij (v_i - v_j) + f_i), 0 along axes without support. All
    are 0 if one is beyond all numbers (GPROJ_ERROR_NUMBER). */
@@ -1703,7 +1709,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
    of all rows. */
 GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
-GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* from the last call that failed */
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
 /* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over
    under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go
@@ -1760,8 +1766,8 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
    are, to the last digit: where products are contracted (-ffp-contract=fast, -std=gnu17 with FMA) or registers are
    longer (x87), states of other machines may be refused. */
 
-/* The size of the state as it is now, in bytes: about 20 for each variable, and more in frames of a solve. 0 after an
-   error of the form. */
+/* The size of the state as it is now, in bytes: about 20 for each variable, up to 150 for each row with coefficients of
+   its own (as lengths have), and more in frames of a solve. 0 after an error of the form. */
 GPROJ_API size_t gproj_state_size(gproj_form *form);
 /* Writes the state to buffer[0..size - 1]; size comes from gproj_state_size. Changes nothing. Errors:
    GPROJ_ERROR_ARGUMENT (another size, no buffer), GPROJ_ERROR_NUMBER (a position or a variable is not finite), or the
@@ -6838,10 +6844,11 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
                                "least squares: the start of variable %d is not a number or beyond 1e50", j);
     if (p->columns > 0 && p->start[0] != 0)
         return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0, "least squares: start[0] is not 0");
-    for (j = 0; j < p->columns; ++j) {
+    for (j = 0; j < p->columns; ++j) /* all of them before any entry is read */
         if (p->start[j + 1] < p->start[j])
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, j,
                                "least squares: column %d ends before it starts", j);
+    for (j = 0; j < p->columns; ++j) {
         if (p->start[j + 1] > p->start[j] && (!p->row || !p->value))
             return gproji_refuse(error, "least squares: the rows or the values of the entries are missing");
         for (e = p->start[j]; e < p->start[j + 1]; ++e) {
@@ -8072,6 +8079,13 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
         return -1;
     }
+    if (group->kind < GPROJ_CONSTRAINT || group->kind > GPROJ_BOUND || group->place < GPROJ_PLACE_NONE ||
+        group->place > GPROJ_PLACE_COLUMN) {
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count,
+                    "group '%s': kind %d must be a gproj_kind, and place %d a gproj_place", group->name,
+                    (int32_t)group->kind, (int32_t)group->place);
+        return -1;
+    }
     if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
     count = (size_t)s->group_count;
     s->group = (gproji_group *)gproji_grow(&s->heap, s->group, &s->capacity.group, count + 1, sizeof *s->group);
@@ -8285,14 +8299,19 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     g = &s->group[group];
+    if (count > 0 && !terms) {
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
+                    "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name, count);
+        return -1;
+    }
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
     for (t = 0; !valid && t < count; ++t)
         if ((uint32_t)terms[t].i >= end || (uint32_t)terms[t].j + 1 > end)
             gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
-                        "row %d of group '%s', term %d: there is no variable %d or %d", g->row_count, g->name, t,
-                        terms[t].i, terms[t].j);
+                        "row %d of group '%s', term %d: there is no variable %d", g->row_count, g->name, t,
+                        (uint32_t)terms[t].i >= end ? terms[t].i : terms[t].j);
     if (!valid) {
         gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
                     "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
@@ -11930,11 +11949,11 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
         if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
             o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
             (o->time_budget > 0 && !s->host.clock.now))
-            gproji_fail(
-                &refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: none may be negative, and a time "
-                "budget needs a clock in the host",
-                iterations, o->tolerance, o->epsilon, o->time_budget);
+            gproji_fail(&refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
+                        "and a time "
+                        "budget needs a clock in the host",
+                        iterations, o->tolerance, o->epsilon, o->time_budget);
         else if (gproji_values_are_valid(s))
             return true;
     }
@@ -11952,6 +11971,7 @@ GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
         return;
     }
     if (!loop->begun) {
+        s->progress.iteration = 0, s->progress.iterations = loop->iterations;
         s->progress.unguided = 0;
         s->yield = nearest ? GPROJI_YIELD_FLOOR : GPROJI_YIELD_SLOWLY;
         if (nearest) {
@@ -19868,8 +19888,8 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
         gproj_term term[9];
         if (!(length > 0) || !gproji_is_finite(length))
             return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edge,
-                                           "lengths: edge %d would have the length %g, which is not > 0", edge,
-                                           length / form->scale));
+                                           "lengths: edge %d would have the length %g, which is not > 0 and finite",
+                                           edge, length / form->scale));
         gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
         gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
     }
@@ -20515,9 +20535,10 @@ GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weigh
 /* Refuses bounds that are no numbers, or that no number satisfies. */
 GPROJI_INTERNAL bool gproji_bounds_are_valid(gproj_form *form, const char *name, double min, double max) {
     if (min <= max && (min <= 0 || gproji_is_finite(min)) && (max >= 0 || gproji_is_finite(max))) return true;
-    return gproji_refuse(&form->error,
-                         "%s: min = %g and max = %g: bounds need min <= max, -INFINITY or INFINITY for none", name, min,
-                         max) == GPROJ_OK;
+    return gproji_refuse(
+               &form->error,
+               "%s: min = %g and max = %g: bounds need min <= max; for none, min = -INFINITY or max = INFINITY", name,
+               min, max) == GPROJ_OK;
 }
 
 /* Takes bounds for something that is never negative: bound = at least and at most, times `scale`; 0 and infinite
@@ -20891,6 +20912,10 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     if (count < 0 || (count > 0 && !terms))
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                                        "%s: a row of %d terms, or no list", part->rule->name, count));
+    if (part->rule->place == GPROJ_PLACE_NONE && element != -1)
+        return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                                       "%s: a row belongs to element %d, but the group has no place; -1 is none",
+                                       part->rule->name, element));
     if (element < -1 || element >= gproji_element_count(form->mesh, part->rule->place))
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_INDEX, part->rule->place, element,
                                        "%s: there is no %s %d, and -1 is none", part->rule->name,
@@ -20901,10 +20926,11 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     for (t = 0; t < count && gproji_form_ready(form); ++t) {
         double a = terms[t].a * form->scale, o[2] = {0, 0}, f[2] = {1, 1};
         int32_t i = terms[t].i, j = terms[t].j;
-        if (!gproji_find_unit(form, i, &o[0], &f[0]) || (j != -1 && !gproji_find_unit(form, j, &o[1], &f[1]))) {
+        bool found = gproji_find_unit(form, i, &o[0], &f[0]);
+        if (!found || (j != -1 && !gproji_find_unit(form, j, &o[1], &f[1]))) {
             gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                        "%s: term %d of a row: %d or %d is neither a coordinate of a vertex nor an unknown of yours",
-                        part->rule->name, t, i, j);
+                        "%s: term %d of a row: %d is neither a coordinate of a vertex nor an unknown of yours",
+                        part->rule->name, t, found ? j : i);
             break;
         }
         if (j == -1) {
@@ -21216,6 +21242,13 @@ GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_l
         return false;
     }
     if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
+    for (v = 0; supports->slides && v < count; ++v) {
+        if (supports->slides[v] <= GPROJI_AXES) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
+                    "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
+                    (int32_t)supports->slides[v]);
+        return false;
+    }
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
         !gproji_is_finite(loads->snow)) {
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
@@ -21423,8 +21456,8 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
     for (k = 0; sections && k < count; ++k) {
         if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
-                    "stress bounds: edge %d would have the cross-section %g, which is not > 0", edges ? edges[k] : k,
-                    sections[k]);
+                    "stress bounds: edge %d would have the cross-section %g, which is not > 0 and finite",
+                    edges ? edges[k] : k, sections[k]);
         return -1;
     }
     part = gproji_new_part(form, &gproji_stress_rule, 2 * count);
@@ -21878,10 +21911,17 @@ GPROJ_API int32_t gproj_force_variable(const gproj_form *form, int32_t edge) {
 
 GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gproj_error *error) {
     gproj_code code = gproji_begin_question(form, "get loads", loads != NULL, error);
+    int32_t i, count;
     if (code == GPROJ_OK) code = gproji_need_statics(form, "get loads", error);
+    if (code == GPROJ_OK && !gproji_positions_are_finite(form, error)) code = GPROJ_ERROR_NUMBER;
     if (code) return code;
     gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
-    return GPROJ_OK;
+    count = 3 * form->mesh->vertex_count;
+    for (i = 0; i < count && gproji_is_finite(loads[i]); ++i) continue;
+    if (i == count) return GPROJ_OK;
+    memset(loads, 0, (size_t)count * sizeof *loads);
+    return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, i / 3,
+                       "the load on vertex %d is beyond all numbers; use a larger unit of force", i / 3);
 }
 
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error) {
@@ -23481,8 +23521,9 @@ GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations
     return result;
 }
 
-/* Is this an end with which another attempt may do better? */
+/* Is this an end with which another attempt may do better? Where nothing must hold it would only wish for less. */
 GPROJI_INTERNAL bool gproji_falls_short(const gproj_result *result) {
+    if (result->worst_group < 0) return false;
     return result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT ||
            (result->outcome == GPROJ_CONVERGED && result->spoiled.total > 0);
 }
@@ -23817,13 +23858,15 @@ GPROJI_INTERNAL gproj_code gproji_write_state(gproj_form *form, uint8_t *out, si
     gproji_pass_bytes(&stream, gproji_hash_bytes(gproji_hash_start, out, stream.at), 8);
     if (!stream.wrong) return GPROJ_OK;
     memset(out, 0, size);
+    if (!gproji_positions_are_finite(form, error)) return GPROJ_ERROR_NUMBER; /* names the vertex */
     return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1, "state: it cannot be saved: %s", stream.wrong);
 }
 
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error) {
     gproji_error_clear(error);
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
-    if (!buffer || size != gproj_state_size(form))
+    if (!buffer) return gproji_refuse(error, "state: there is no buffer");
+    if (size != gproj_state_size(form))
         return gproji_refuse(error, "state: %l bytes to write to; it has %l, see gproj_state_size", (int64_t)size,
                              (int64_t)gproj_state_size(form));
     return gproji_write_state(form, (uint8_t *)buffer, size, error);
@@ -23834,7 +23877,8 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
     gproji_stream in = gproji_make_stream(GPROJI_CHECK, NULL, (const uint8_t *)state, sizeof gproji_state_magic, size);
     gproji_stream tail = in, check;
     uint64_t stated;
-    /* 1. Refuse what is no state of this form, or damaged. */
+    /* 1. Refuse what is no state of this form, or damaged. After an error parts may lack their arrays. */
+    if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     if (!state || size < GPROJI_STATE_HEAD + GPROJI_STATE_TAIL ||
         memcmp(state, gproji_state_magic, sizeof gproji_state_magic) != 0)
         return gproji_fail(error, GPROJ_ERROR_SYNTAX, GPROJ_PLACE_NONE, -1,
@@ -24250,10 +24294,12 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
         return gproji_refuse(error, "drag: a residual bound of %g is not >= 0", options->residual_bound);
     if (!h || h->count < 1 || h->count > INT32_MAX / 12 || !h->vertex)
         return gproji_refuse(error, "drag: there are no handles");
+    for (k = 0; h->start && k < h->count; ++k) /* all of them before any vertex is read */
+        if (h->start[k] < 0 || h->start[k] > h->start[k + 1])
+            return gproji_refuse(error, "drag: the list of handle %d is no list", k);
     for (k = 0; k < h->count; ++k) {
         int64_t e = h->start ? h->start[k] : k, end = h->start ? h->start[k + 1] : k + 1;
         double size = 0;
-        if (e < 0 || e > end) return gproji_refuse(error, "drag: the list of handle %d is no list", k);
         for (; e < end; ++e) {
             double weight = h->weight ? h->weight[e] : 1;
             if (h->vertex[e] < 0 || h->vertex[e] >= form->mesh->vertex_count)

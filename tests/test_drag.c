@@ -761,7 +761,7 @@ GPROJT_TEST(lists_that_begin_later) {
 }
 
 GPROJT_TEST(refused) {
-    static const int64_t start[] = {0, 1, 0}, empty[] = {0, 0}, late[] = {-1, 0};
+    static const int64_t start[] = {0, 1, 0}, beyond[] = {0, 3, 2}, empty[] = {0, 0}, late[] = {-1, 0};
     static const double none[] = {0, 0}, endless[] = {HUGE_VAL, 1};
     static const double astray[] = {0, 0, 0, 0, NAN, 0}, far[] = {0, 0, -1e71};
     static const int32_t outside[] = {3, 99}, before[] = {-3}, two[] = {3, 4};
@@ -784,6 +784,8 @@ GPROJT_TEST(refused) {
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "no handles");
     handles = gprojt_vertex_handles(2, two);
     handles.start = start;
+    gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "the list of handle 1");
+    handles.start = beyond; /* no entry is read before all starts are known to ascend */
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_ARGUMENT, "the list of handle 1");
     handles.count = 1;
     handles.start = empty;
@@ -820,6 +822,36 @@ GPROJT_TEST(refused) {
     gprojt_check_refusal(form, &handles, NULL, GPROJ_ERROR_NUMBER, "vertex 1");
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
+}
+
+/* A drag may be cancelled although what was added meanwhile has failed, and lacks arrays. */
+static bool gprojt_add_amid_a_drag(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = gprojt_roof(4, 0);
+    gproj_form *form = gproj_form_create(mesh, host);
+    int32_t v = 3, k, pins[5] = {0, 1, 2, 3, 4};
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_supports supports;
+    gproj_loads loads;
+    gproj_drag *drag;
+    bool done;
+    memset(&loads, 0, sizeof loads);
+    memset(&supports, 0, sizeof supports);
+    supports.count = 5, supports.vertex = pins;
+    gproj_add_planarity(form, 1);
+    drag = gproj_drag_begin(form, &handles, NULL, NULL);
+    k = gproj_add_equilibrium(form, &loads, &supports, 1);
+    done = drag && k >= 0;
+    GPROJT_CHECK(done || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY || !drag);
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    *(int32_t *)user += !done;
+    return done;
+}
+
+GPROJT_TEST(cancelled_after_a_failed_addition) {
+    int32_t failed = 0;
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_add_amid_a_drag, &failed) > 50 && failed > 50);
 }
 
 /* Beside a solve that is on no drag begins, and no state is restored, though a callback asks for it. */
@@ -1282,6 +1314,7 @@ int main(void) {
     GPROJT_RUN(cancelled_after_additions);
     GPROJT_RUN(lists_that_begin_later);
     GPROJT_RUN(refused);
+    GPROJT_RUN(cancelled_after_a_failed_addition);
     GPROJT_RUN(refused_in_a_solve);
     GPROJT_RUN(unknowns_without_start);
     GPROJT_RUN(refreshes_that_fail_in_a_move);

@@ -2721,7 +2721,7 @@ GPROJT_TEST(wrong_options_are_of_the_call) {
         if (i == 3) options.time_budget = 1;
         result = gproj_solve(form, i == 0 ? -1 : i == 4 ? INT32_MIN : 9, &options);
         GPROJT_CHECK(result.outcome == GPROJ_FAILED && result.iterations == 0);
-        GPROJT_CHECK(strstr(result.message, "none may be negative") != NULL);
+        GPROJT_CHECK(strstr(result.message, "all must be finite and >= 0") != NULL);
         GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
         GPROJT_CHECK(gprojt_unmoved(mesh, before));
     }

@@ -899,6 +899,8 @@ GPROJT_TEST(bad_arguments) {
     s.row[s.start[2]] = -1, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 2), s.row[s.start[2]] = 1;
     s.start[0] = 1, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0), s.start[0] = 0;
     s.start[5] = 0, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 4);
+    s.start[1] = 1000000; /* no entry is read before all starts are known to ascend */
+    check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 1);
     squares_free(&s);
 }
 

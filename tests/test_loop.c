@@ -231,6 +231,32 @@ GPROJT_TEST(seconds_add_up) {
     gproj_system_destroy(s);
 }
 
+/* The state of a solve at its first refresh is that of a solve in which none has begun, with this solve's limit. */
+static void gprojt_first_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    int32_t *seen = (int32_t *)user;
+    (void)s, (void)group;
+    if (++seen[0] > 1) return;
+    seen[1] = progress->iteration, seen[2] = progress->iterations;
+}
+
+GPROJT_TEST(first_refreshes) {
+    static const double x[1] = {5};
+    gproj_system *s = gprojt_system(NULL, 1, 1, x);
+    gproj_group group;
+    int32_t seen[3], limit;
+    memset(&group, 0, sizeof group);
+    group.name = "seen", group.schedule = gproj_keep(1);
+    group.refresh = gprojt_first_refresh, group.refresh_user = seen;
+    gprojt_add_linear(s, gproj_system_add_group(s, &group), 0, 1, 0, 0);
+    for (limit = 20; limit > 0; limit -= 10) {
+        memset(seen, 0, sizeof seen);
+        gproj_system_values(s)[0] = 5;
+        gproj_system_solve(s, limit, NULL);
+        GPROJT_CHECK(seen[0] > 0 && seen[1] == 0 && seen[2] == limit);
+    }
+    gproj_system_destroy(s);
+}
+
 static void gprojt_bad_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
     (void)progress;
     if (++*(int *)user == 2) gproj_system_set_row(s, group, 99, NULL, 0);
@@ -1698,6 +1724,7 @@ int main(void) {
     GPROJT_RUN(cancelled_keeps_the_state);
     GPROJT_RUN(time_out);
     GPROJT_RUN(seconds_add_up);
+    GPROJT_RUN(first_refreshes);
     GPROJT_RUN(failed_by_an_error_on_the_way);
     GPROJT_RUN(failed_by_an_error_of_a_callback);
     GPROJT_RUN(refused_slides);

@@ -384,17 +384,21 @@ GPROJT_TEST(rows_after_weights_and_a_solve) {
 /* Each wrong call says what is wrong. */
 GPROJT_TEST(wrong_rows_are_refused) {
     static const double none[3] = {0, 0, 0}, values[4] = {0, 0, 0, 1e300};
-    static const char *const words[] = {
-        "neither",     "neither", "neither",      "none of",    "none of",    "3 each",    "1 or more",  "1 or more",
-        "beyond 1e70", "1e50",    "finite",       "gproj_kind", "gproj_kind", "no vertex", "neither",    "-1 terms",
-        "or no list",  "none of", "no vertex -2", "gproj_kind", "1 or more",  "1 or more", "gproj_kind", "gproj_kind"};
+    static const char *const words[] = {"neither",   "neither",    "neither",    "none of",      "none of",
+                                        "3 each",    "1 or more",  "1 or more",  "beyond 1e70",  "1e50",
+                                        "finite",    "gproj_kind", "gproj_kind", "no vertex",    "neither",
+                                        "-1 terms",  "or no list", "none of",    "no vertex -2", "gproj_kind",
+                                        "1 or more", "1 or more",  "gproj_kind", "gproj_kind",   "has no place"};
     int32_t i;
-    for (i = 0; i < 24; ++i) {
+    for (i = 0; i < 25; ++i) {
         gproj_mesh *mesh = gprojt_cap(4, 1, none);
         gproj_form *form = gproj_form_create(mesh, NULL);
         int32_t planar = gproj_add_planarity(form, 1), got;
         gproj_kind kind = i == 11 ? (gproj_kind)7 : i == 19 ? (gproj_kind)-1 : GPROJ_CONSTRAINT;
-        gproj_place place = i == 12 ? GPROJ_PLACE_ROW : i == 22 ? (gproj_place)-1 : GPROJ_PLACE_VERTEX;
+        gproj_place place = i == 12   ? GPROJ_PLACE_ROW
+                            : i == 22 ? (gproj_place)-1
+                            : i == 24 ? GPROJ_PLACE_NONE
+                                      : GPROJ_PLACE_VERTEX;
         int32_t group = gproj_add_rows(form, "mine", kind, i == 23 ? (gproj_place)99 : place, i == 9 ? -1 : 1);
         gproj_term term = gprojt_term(0, -1, i == 10 ? INFINITY : 1);
         if (i == 0) term.i = -1;
@@ -412,9 +416,9 @@ GPROJT_TEST(wrong_rows_are_refused) {
               : i == 18 ? gproj_form_add_row(form, group, 1, &term, 0, -2)
               : i == 20 ? gproj_form_add_unknowns(form, group, (gproj_unit)-1, 1, values, NULL, NULL)
               : i == 21 ? gproj_form_add_unknowns(form, group, (gproj_unit)9, 1, values, NULL, NULL)
-              : i == 9 || i == 11 || i == 12 || i == 19 || i >= 22 ? group
-              : i == 15                                            ? gproj_form_add_row(form, group, -1, &term, 0, 0)
-              : i == 16                                            ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
+              : i == 9 || i == 11 || i == 12 || i == 19 || i == 22 || i == 23 ? group
+              : i == 15 ? gproj_form_add_row(form, group, -1, &term, 0, 0)
+              : i == 16 ? gproj_form_add_row(form, group, 1, NULL, 0, 0)
               : i == 13 ? gproj_form_add_row(form, group, 1, &term, 0, mesh->vertex_count)
                         : gproj_form_add_row(form, group, 1, &term, 0, 0);
         if (!strstr(gproj_form_error(form)->message, words[i]))

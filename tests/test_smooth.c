@@ -476,6 +476,22 @@ GPROJT_TEST(closeness_that_is_skipped_stays_out) {
     }
 }
 
+/* Wishes that nothing holds shrink a mesh, and no other attempt hides that: the verdict says so. */
+GPROJT_TEST(wishes_alone_shrink) {
+    gproj_mesh *mesh = gprojt_noisy(4, 3, 0.1, 3); /* a torus */
+    double *before = gprojt_keep(mesh);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_result result;
+    gproj_add_fairness(form, 0.3);
+    result = gproj_solve(form, 200, &options);
+    GPROJT_CHECK(result.attempts == 1 && strstr(result.message, "nothing holds the mesh"));
+    GPROJT_CHECK(gprojt_largest_move(before, mesh->position, mesh->vertex_count) > 0.3 * gprojt_unit(form));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(before);
+}
+
 typedef struct gprojt_attempts {
     int32_t last, calls, cancel_at;
     bool ascending;
@@ -1110,6 +1126,7 @@ int main(void) {
     GPROJT_RUN(creeping_takes_iterations);
     GPROJT_RUN(bowls_stand_nearby);
     GPROJT_RUN(closeness_that_is_skipped_stays_out);
+    GPROJT_RUN(wishes_alone_shrink);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(later_attempts_end_early);

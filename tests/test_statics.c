@@ -1897,8 +1897,14 @@ GPROJT_TEST(refusals_of_equilibrium) {
                                       : -1);
     }
     {
+        static const uint8_t slides[3] = {0, 7, 8};
+        static const int32_t pins[3] = {0, 1, 2};
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads = gprojt_no_loads();
+        gproj_supports sliding = {3, pins, slides};
+        gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &sliding, 1) == -1, GPROJ_ERROR_ARGUMENT,
+                             GPROJ_PLACE_VERTEX, 2);
+        form = gproj_form_create(mesh, NULL);
         gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, NULL, 1) == -1, GPROJ_ERROR_ARGUMENT,
                              GPROJ_PLACE_NONE, -1);
         form = gprojt_form_with_equilibrium(mesh);
@@ -1971,6 +1977,7 @@ GPROJT_TEST(refused_questions_leave_the_form) {
     mesh->position[5] = INFINITY;
     gprojt_check_question(form, GPROJT_FIND_FORCES, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 1, "vertex 1");
     gprojt_check_question(form, GPROJT_FIND_IMBALANCE, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 1, "vertex 1");
+    gprojt_check_question(form, GPROJT_GET_LOADS, w, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 1, "vertex 1");
     {
         int32_t v = 5;
         gproj_handles handles = {1, NULL, &v, NULL, NULL};

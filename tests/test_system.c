@@ -211,6 +211,9 @@ typedef enum gprojt_call {
     GPROJT_NEGATIVE_TERMS,
     GPROJT_TERM_I,
     GPROJT_TERM_J,
+    GPROJT_NO_TERMS,
+    GPROJT_KIND_9,
+    GPROJT_PLACE_99,
     GPROJT_NAN_COEFFICIENT,
     GPROJT_INFINITE_CONSTANT,
     GPROJT_SET_NO_ROW,
@@ -242,6 +245,9 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     static const gproj_schedule zero_decay = {1, 0, 5}, zero_last = {1, 1, 0};
     static const double values[3] = {1, NAN, 2};
     gproj_term term = gprojt_term(0, -1, 1);
+    gproj_group group;
+    memset(&group, 0, sizeof group);
+    group.name = "wrong";
     switch (call) {
     case GPROJT_BLOCK_0: return gproj_system_add_variables(s, 6, 0, NULL);
     case GPROJT_BLOCK_9: return gproj_system_add_variables(s, 18, 9, NULL);
@@ -259,6 +265,9 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     case GPROJT_NEGATIVE_TERMS: return gproj_system_add_row(s, 0, -1, &term, 0, 0);
     case GPROJT_TERM_I: term.i = 6; return gproj_system_add_row(s, 0, 1, &term, 0, 0);
     case GPROJT_TERM_J: term.j = -2; return gproj_system_add_row(s, 0, 1, &term, 0, 0);
+    case GPROJT_NO_TERMS: return gproj_system_add_row(s, 0, 1, NULL, 0, 0);
+    case GPROJT_KIND_9: group.kind = (gproj_kind)9; return gproj_system_add_group(s, &group);
+    case GPROJT_PLACE_99: group.place = (gproj_place)99; return gproj_system_add_group(s, &group);
     case GPROJT_NAN_COEFFICIENT: term.a = NAN; return gproj_system_add_row(s, 0, 1, &term, 0, 0);
     case GPROJT_INFINITE_CONSTANT: return gproj_system_add_row(s, 0, 1, &term, HUGE_VAL, 0);
     case GPROJT_SET_NO_ROW: return -(gproj_system_set_row(s, 0, 1, NULL, 0) == GPROJ_ERROR_INDEX);
@@ -302,7 +311,10 @@ static const gprojt_refusal gprojt_refusals[GPROJT_CALLS] = {
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 1, "group 1 of 1 groups"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 0, "-1 terms"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "row 1 of group 'rows', term 0: there is no variable 6"},
-    {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "variable 0 or -2"},
+    {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "no variable -2"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 1, "row 1 of group 'rows' has 1 terms, but no list"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, 1, "kind 9 must be"},
+    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, 1, "place 99 a gproj_place"},
     {GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 1, "row 1 of group 'rows' has a coefficient"},
     {GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 1, "not a finite number"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "no row 1 in group 0"},
