@@ -8031,7 +8031,7 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         gproji_fail_memory(&s->error);
         return -1;
     }
-    if (s->compiled) gproji_system_forget(s);
+    if (s->compiled && count > 0) gproji_system_forget(s);
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
         s->blocks.first[first + i] = first + i - i % block;
@@ -8299,9 +8299,11 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
         return -1;
     }
     g = &s->group[group];
-    if (count > 0 && !terms) {
+    if ((count > 0 && !terms) || g->role == GPROJI_SAFEGUARD) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name, count);
+                    g->role == GPROJI_SAFEGUARD ? "row %d of group '%s': only solves add rows to this group"
+                                                : "row %d of group '%s' has %d terms, but no list of them",
+                    g->row_count, g->name, count);
         return -1;
     }
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
@@ -8356,7 +8358,9 @@ GPROJI_INTERNAL int32_t gproji_add_safeguard_row(gproj_system *s, int32_t group,
     bool solving = s->solving;
     int32_t row;
     s->solving = false;
+    s->group[group].role = GPROJI_ORDINARY; /* callers may add none to a safeguard */
     row = gproj_system_add_row(s, group, count, terms, constant, element);
+    s->group[group].role = GPROJI_SAFEGUARD;
     s->solving = solving;
     if (row >= 0) s->group[group].row[row].weight = 0;
     return row;
@@ -10476,7 +10480,8 @@ typedef struct gproji_loop {
     double tolerance;
     gproji_times time;
     bool begun;    /* the first run has begun */
-    bool restored; /* x and the rows' numbers are those of a saved state */
+    bool restored; /* x and the rows' numbers are those of a saved state, */
+    bool unseen;   /* which was saved after changes that its rows do not show yet */
     bool paused;   /* the run ended for its time, and there is more to do */
     gproj_result result;
     gproj_iteration iteration;
@@ -11170,7 +11175,7 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
         back = back || (g->weight == 0 && weight > 0);
         g->weight = weight;
     }
-    if (back && !gproji_place_woken(loop, false)) gproji_linearise(loop);
+    if (back && !gproji_place_woken(loop, false) && s->compiled) gproji_linearise(loop); /* not without memory */
 }
 
 /* Lets the first step of a solve have this stiffness; `anchored`: steps lead to the least way from here. */
@@ -11350,7 +11355,7 @@ GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
         loop->watch.yield_at = gproji_min(loop->iterations, loop->result.iterations + GPROJI_SAFE_LAST);
     if (!last) s->yield = GPROJI_YIELD_LAST;
     if (loop->stiff) gproji_stiffen(loop, 1);
-    if (!last) gproji_linearise(loop);
+    if (!last && s->compiled) gproji_linearise(loop);
     loop->best.residual = loop->best.merit = HUGE_VAL;
     loop->waited = loop->trust.wary = 0;
     return true;
@@ -11945,7 +11950,6 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
     if (gproji_system_is_open(s)) {
         for (i = 0; i < s->group_count; ++i)
             loop->stiff = loop->stiff || (s->group[i].role >= GPROJI_METRIC && s->group[i].schedule.weight > 0);
-        s->stiffness = loop->stiff;
         if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
             o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
             (o->time_budget > 0 && !s->host.clock.now))
@@ -11954,8 +11958,10 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
                         "and a time "
                         "budget needs a clock in the host",
                         iterations, o->tolerance, o->epsilon, o->time_budget);
-        else if (gproji_values_are_valid(s))
+        else if (gproji_values_are_valid(s)) {
+            s->stiffness = loop->stiff, s->anchored = false;
             return true;
+        }
     }
     loop->result = gproji_failed_result(refused.code ? &refused : gproj_system_error(s));
     return false;
@@ -11964,14 +11970,14 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
 /* Begins the first run, or a further one with all changes since the last. */
 GPROJI_INTERNAL void gproji_begin_run(gproji_loop *loop) {
     gproj_system *s = loop->system;
-    bool changed = s->changed, nearest = loop->options.nearest;
+    bool changed = s->changed || (loop->restored && loop->unseen), nearest = loop->options.nearest;
+    s->progress.iteration = loop->result.iterations, s->progress.iterations = loop->iterations;
     s->progress.tangential = nearest;
     if (nearest && (!loop->begun || !s->vector.sum) && !gproji_start_multipliers(s)) { /* see gproj_system_solve */
         gproji_fail_memory(&s->error);
         return;
     }
     if (!loop->begun) {
-        s->progress.iteration = 0, s->progress.iterations = loop->iterations;
         s->progress.unguided = 0;
         s->yield = nearest ? GPROJI_YIELD_FLOOR : GPROJI_YIELD_SLOWLY;
         if (nearest) {
@@ -12201,6 +12207,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_passing passing;
     bool nearest, begun, ready = s->compiled && s->vector.sum;
     int32_t yield = (int32_t)s->yield;
+    if (!gproji_comes_in(stream)) loop->unseen = loop->begun && (s->changed || (loop->restored && loop->unseen));
     gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
@@ -12234,6 +12241,8 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_integer(stream, &loop->watch.seen, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
     gproji_pass_integer(stream, &s->progress.unguided, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->earlier, 0, INT32_MAX / 2);
+    gproji_pass_bool(stream, &loop->unseen);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
     if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
@@ -18944,7 +18953,7 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* Adds a part for `count` entries, which the builder fills in; NULL after an error. */
 GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
-    if (!gproji_form_ready(form)) return NULL;
+    if (!gproji_form_ready(form) || !gproji_system_is_open(form->system)) return NULL;
     part = (gproji_part *)gproji_take_zeroed(&form->heap, 1, sizeof *part);
     if (part) {
         gproji_pool_start(&part->pool, &form->heap);
@@ -21329,20 +21338,21 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
     s = form->statics;
-    s->group = gproji_new_group(form, &gproji_equilibrium_rule, weight);
-    if (s->group < 0) return -1;
     /* Each edge has at most 2 terms in the 3 rows at each end. */
     for (v = 0; v < form->mesh->vertex_count; ++v)
         if (s->load_start[v + 1] - s->load_start[v] > (int64_t)most)
             most = (size_t)(s->load_start[v + 1] - s->load_start[v]);
-    edge_terms = 12 * (size_t)form->mesh->edge_count;
-    gproji_expect_group(form, s->group, 0, 3 * (size_t)v, edge_terms + 3 * (size_t)s->load_start[v],
-                        edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
+    /* A group is made when nothing is missing any more: a refresh counts on all its rows. */
     spokes = 2 * (size_t)form->work.ring_size;
     count = spokes + 3 * most;
     spoke = (int32_t *)gproji_take(&form->heap, spokes, sizeof *spoke);
     term = (gproj_term *)gproji_take(&form->heap, count, sizeof *term);
     if (!spoke || !term) gproji_fail_memory(&form->error);
+    if (gproji_form_ready(form)) s->group = gproji_new_group(form, &gproji_equilibrium_rule, weight);
+    edge_terms = 12 * (size_t)form->mesh->edge_count;
+    if (s->group >= 0)
+        gproji_expect_group(form, s->group, 0, 3 * (size_t)v, edge_terms + 3 * (size_t)s->load_start[v],
+                            edge_terms + 3 * ((size_t)v + (size_t)s->load_start[v]));
     for (v = 0; v < form->mesh->vertex_count && gproji_form_ready(form); ++v)
         if (s->axes[v]) gproji_add_vertex_equilibrium(form, v, spoke, term);
     gproji_give(&form->heap, spoke, spokes, sizeof *spoke);
@@ -21529,8 +21539,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 /* The edge whose force a bound's row keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
     const gproji_group *g = gproji_group_at(form->system, group);
-    int32_t count, edge = g->row[row].element;
-    const gproj_term *term = gproji_row_terms(form->system, group, row, &count);
+    int32_t count = (int32_t)g->row[row].terms, edge = g->row[row].element;
+    const gproj_term *term = g->term + g->row[row].term; /* which a caller's rows may share */
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
     if (count != 1 || term->j >= 0) return -1;
     if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
@@ -22970,7 +22980,7 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
         bool stress = part && part->rule == &gproji_stress_rule;
         if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
-            if (!(g->row[r].weight > 0)) continue;
+            if (!(g->row[r].weight > 0) || (stress && r >= part->count)) continue; /* behind them are the caller's */
             e = stress ? part->element[r] : gproji_bounded_force(form, i, r, &sign);
             if (e < 0) continue;
             if (!stress && sign > 0) positive[force[e]] = 1;
@@ -23276,8 +23286,8 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
 GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
     const double *x = gproj_system_values(form->system);
     const gproji_group *g = gproji_group_at(form->system, group);
-    int32_t count = 3 * form->mesh->vertex_count, r;
-    for (r = 0; r < g->row_count; ++r) {
+    int32_t count = 3 * form->mesh->vertex_count, rows = count + 3 * form->mesh->edge_count, r;
+    for (r = 0; r < rows && r < g->row_count; ++r) {
         int32_t e = (r - count) / 3, k = (r - count) % 3;
         double from =
             r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
@@ -23688,7 +23698,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstI", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstJ", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -23831,7 +23841,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'I'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'J'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
@@ -24053,9 +24063,13 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     const double *x = gproj_system_values(system);
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, rank;
     int32_t light_from = 3 * drag->form->mesh->vertex_count, damping, i, j;
-    double residual = gproji_see_hard(system, NULL), *column;
+    double residual, *column;
     gproji_tangent how;
     int64_t e;
+    if (!gproji_begin_tangent(system, GPROJI_DRAG_SIDES)) /* a solve of the system meanwhile may have another matrix */
+        return gproji_form_ready(drag->form) ? gproji_fail_memory(error)
+                                             : gproji_pass_on(error, gproj_form_error(drag->form));
+    residual = gproji_see_hard(system, NULL);
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     /* 1. The responses Q by (1): column 3 k + c begins as the force of handle k along axis c. */
     memcpy(drag->base, x, n * sizeof *drag->base);
@@ -24345,18 +24359,6 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     return NULL;
 }
 
-GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
-    gproj_form *form;
-    if (!drag) return;
-    form = drag->form;
-    gproji_reset_mesh(form);
-    memcpy(gproj_system_values(form->system), drag->begun, (size_t)drag->variables * sizeof *drag->begun);
-    gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
-    gproji_destroy_drag(drag);
-}
-
-/* -- release -- */
-
 /* Sets the schedules of the release, or puts back the earlier ones. */
 GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_form *form = drag->form;
@@ -24376,6 +24378,19 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), fairness);
     gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
+
+GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
+    gproj_form *form;
+    if (!drag) return;
+    form = drag->form;
+    if (drag->released && gproji_form_ready(form)) gproji_schedule_release(drag, false);
+    gproji_reset_mesh(form);
+    memcpy(gproj_system_values(form->system), drag->begun, (size_t)drag->variables * sizeof *drag->begun);
+    gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
+    gproji_destroy_drag(drag);
+}
+
+/* -- release -- */
 
 GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     gproj_form *form;
@@ -24397,11 +24412,14 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     x = gproj_system_values(s);
     /* 1. The rows of the groups: fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
+        int64_t l = fairness->row[r].local;
+        for (; l < fairness->row[r + 1].local && fairness->local.variable[l] < 3 * drag->form->mesh->vertex_count;) ++l;
+        if (l < fairness->row[r + 1].local) continue; /* a caller's row */
         gproj_system_set_row(s, soft, r, NULL, 0);
         gproj_system_set_row(s, soft, r, NULL, -gproji_row_value(fairness, r, drag->first));
     }
     /* All vertices stay, with a little weight; */
-    for (r = 0; r < at->row_count; ++r) {
+    for (r = 0; r < 3 * drag->form->mesh->vertex_count; ++r) {
         gproj_system_set_row(s, group, r, NULL, -drag->first[r]);
         gproj_system_set_row_weight(s, group, r, gproji_drag_rest);
     }

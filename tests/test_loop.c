@@ -1422,9 +1422,10 @@ GPROJT_TEST(safeguards_give_way) {
     int32_t safe, last[2];
     for (safe = 0; safe < 2; ++safe) {
         gproj_system *s = gprojt_conflict();
-        int32_t group = gprojt_add_role(s, "safe", GPROJ_BOUND, safe ? GPROJI_SAFEGUARD : GPROJI_ORDINARY);
+        int32_t group = gprojt_add_group(s, "safe", GPROJ_BOUND, 1);
         gproj_result result;
         gprojt_add_linear(s, group, 0, 1, 10, 0);
+        gproji_declare_role(s, group, safe ? GPROJI_SAFEGUARD : GPROJI_ORDINARY); /* which takes no rows of callers */
         result = gproj_system_solve(s, 200, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_STALLED);
         GPROJT_CHECK(s->yield == (safe ? GPROJI_YIELD_LAST : GPROJI_YIELD_SLOWLY));
@@ -1448,9 +1449,10 @@ GPROJT_TEST(rounding_chooses_no_safeguards) {
         memset(&watch, 0, sizeof watch);
         options = gprojt_watched(&watch);
         gprojt_add_group(s, "one", GPROJ_CONSTRAINT, 1);
-        group = gprojt_add_role(s, "safe", GPROJ_BOUND, GPROJI_SAFEGUARD);
+        group = gprojt_add_group(s, "safe", GPROJ_BOUND, 1);
         gprojt_add_linear(s, 0, 0, 1, -1, 0);
         gprojt_add_linear(s, group, 0, 1, phi[k], 0);
+        gproji_declare_role(s, group, GPROJI_SAFEGUARD);
         GPROJT_CHECK(gproj_system_solve(s, 9, &options).outcome == GPROJ_CONVERGED);
         GPROJT_CHECK(watch.seen[0].factorisations == (k < 4 ? 1 : 2));
         gproj_system_destroy(s);
