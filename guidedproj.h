@@ -12088,12 +12088,10 @@ GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, 
 
 GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     double worst = 0, *gradient;
-    gproji_loop loop;
+    bool changed;
     int32_t i, r;
     size_t n;
     if (!gproji_system_is_open(s)) return HUGE_VAL;
-    memset(&loop, 0, sizeof loop);
-    loop.system = s;
     n = (size_t)s->variable_count;
     gradient = (double *)gproji_take_zeroed(&s->heap, n, sizeof *gradient);
     if (!gradient) {
@@ -12101,8 +12099,11 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
         return HUGE_VAL;
     }
     s->solving = true;
-    gproji_set_weights(&loop, 1);
-    gproji_refresh_groups(s);
+    changed = s->changed; /* a solve in frames goes on as if nothing had been asked */
+    for (i = 0; i < s->group_count; ++i)
+        if (s->group[i].refresh && s->group[i].schedule.weight > 0)
+            s->group[i].refresh(s->group[i].refresh_user, s, i, &s->progress);
+    s->changed = changed;
     s->solving = false;
     for (i = 0; i < s->group_count; ++i)
         for (r = 0; r < s->group[i].row_count; ++r)
@@ -12110,6 +12111,7 @@ GPROJ_API double gproj_system_check_gradients(gproj_system *s) {
     gproji_give(&s->heap, gradient, n, sizeof *gradient);
     return s->error.code == GPROJ_OK ? worst : HUGE_VAL;
 }
+
 /* -- saving: see >>stream -- */
 
 /* The part of a solve that is passed. */

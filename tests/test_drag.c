@@ -854,6 +854,42 @@ GPROJT_TEST(cancelled_after_a_failed_addition) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_add_amid_a_drag, &failed) > 50 && failed > 50);
 }
 
+/* Additions amid a drag: no variables are none, which the drag does not notice; the system may be solved meanwhile; rows in a
+   release make it end, and when it is cancelled the schedules are those before it. */
+GPROJT_TEST(additions_amid_a_drag) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 3);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *s = gproj_form_system(form);
+    int32_t v = 12, fairness, k;
+    double to[3];
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 1;
+    gproj_add_planarity(form, 1);
+    fairness = gproj_add_fairness(form, 0.2);
+    gproj_solve(form, 20, NULL);
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    GPROJT_CHECK(gproj_system_add_variables(s, 0, 1, NULL) >= 0);
+    GPROJT_CHECK(gproj_drag_residual(drag) < 1e-9);
+    gproj_system_solve(s, 3, NULL); /* by multipliers: another matrix */
+    memcpy(to, mesh->position + 3 * v, sizeof to);
+    to[2] += 0.3 * gprojt_unit(form);
+    GPROJT_CHECK(gproj_drag_move(drag, to) == GPROJ_OK && gproj_drag_residual(drag) < 1);
+    GPROJT_CHECK(gproj_drag_release(drag));
+    gproj_solve_advance(form, 0);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_drag_cancel(drag);
+    GPROJT_CHECK(gproj_form_group_info(form, fairness).schedule.weight == 0.2);
+    for (k = 0; k < gproj_system_group_count(s); ++k)
+        if (!strcmp(gproj_form_group_info(form, k).name, "drag handles"))
+            GPROJT_CHECK(gproj_form_group_info(form, k).schedule.weight == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Beside a solve that is on no drag begins, and no state is restored, though a callback asks for it. */
 typedef struct gprojt_asker {
     gproj_form *form;
@@ -1315,6 +1351,7 @@ int main(void) {
     GPROJT_RUN(lists_that_begin_later);
     GPROJT_RUN(refused);
     GPROJT_RUN(cancelled_after_a_failed_addition);
+    GPROJT_RUN(additions_amid_a_drag);
     GPROJT_RUN(refused_in_a_solve);
     GPROJT_RUN(unknowns_without_start);
     GPROJT_RUN(refreshes_that_fail_in_a_move);

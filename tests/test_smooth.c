@@ -476,6 +476,51 @@ GPROJT_TEST(closeness_that_is_skipped_stays_out) {
     }
 }
 
+/* A builder that a callback calls is refused, and leaves nothing behind that the solve would settle. */
+static void gprojt_build_in_refresh(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
+    (void)system, (void)group, (void)progress;
+    gproj_add_circularity((gproj_form *)user, 1);
+}
+
+GPROJT_TEST(builders_in_callbacks) {
+    gproj_mesh *mesh = gprojt_twisted(5, 0.4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_group group;
+    gproj_term term;
+    gproj_result result;
+    memset(&group, 0, sizeof group);
+    gproj_add_planarity(form, 1);
+    group.name = "own", group.kind = GPROJ_WISH, group.schedule = gproj_keep(1e-3);
+    group.refresh = gprojt_build_in_refresh, group.refresh_user = form;
+    term.i = 5, term.j = -1, term.a = 1;
+    gproj_system_add_row(gproj_form_system(form), gproj_system_add_group(gproj_form_system(form), &group), 1, &term, 0, -1);
+    result = gproj_solve(form, 30, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && strstr(result.message, "during a solve"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Safeguards get rows by solves alone. */
+GPROJT_TEST(safeguards_take_no_rows) {
+    gproj_mesh *mesh = gprojt_twisted(6, 0.4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_system *s = gproj_form_system(form);
+    gproj_term term;
+    int32_t group = -1, g;
+    term.i = 0, term.j = -1, term.a = 1;
+    gproj_add_planarity(form, 1);
+    gproj_solve(form, 100, &options);
+    for (g = 0; g < gproj_system_group_count(s); ++g)
+        if (!strcmp(gproj_form_group_info(form, g).name, "corners")) group = g;
+    GPROJT_REQUIRE(group >= 0);
+    GPROJT_CHECK(gproj_system_add_row(s, group, 1, &term, 0, -1) == -1);
+    GPROJT_CHECK(strstr(gproj_system_error(s)->message, "only solves add rows"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Wishes that nothing holds shrink a mesh, and no other attempt hides that: the verdict says so. */
 GPROJT_TEST(wishes_alone_shrink) {
     gproj_mesh *mesh = gprojt_noisy(4, 3, 0.1, 3); /* a torus */
@@ -1126,6 +1171,8 @@ int main(void) {
     GPROJT_RUN(creeping_takes_iterations);
     GPROJT_RUN(bowls_stand_nearby);
     GPROJT_RUN(closeness_that_is_skipped_stays_out);
+    GPROJT_RUN(builders_in_callbacks);
+    GPROJT_RUN(safeguards_take_no_rows);
     GPROJT_RUN(wishes_alone_shrink);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);

@@ -1956,6 +1956,26 @@ static void gprojt_check_question(gproj_form *form, int question, double *w, gpr
     GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
 }
 
+/* Equilibrium that lacks memory has no group, whose refresh would count on all rows. */
+static bool gprojt_half_built(const gproj_host *host, void *user) {
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
+    gproj_form *form = gproj_form_create(mesh, host);
+    gproj_system *s = gproj_form_system(form);
+    gproj_loads loads = gprojt_no_loads();
+    static const int32_t pins[4] = {0, 4, 20, 24};
+    gproj_supports supports = {4, pins, NULL};
+    bool done;
+    (void)user;
+    loads.area_load = 1;
+    done = gproj_add_equilibrium(form, &loads, &supports, 1) >= 0;
+    if (!done && s && gproj_system_error(s)->code == GPROJ_OK) gproj_system_solve(s, 2, NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    return done;
+}
+
+GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_half_built, NULL) > 20); }
+
 GPROJT_TEST(refused_questions_leave_the_form) {
     gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
     double *w = gprojt_numbers(3 * mesh->vertex_count + mesh->edge_count), *kept, *again, x = mesh->position[5];
@@ -2291,6 +2311,7 @@ int main(void) {
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(half_built_equilibrium);
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);
