@@ -23406,6 +23406,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored;
+    bool started = form->statics && form->statics->started;
     const gproji_part *part;
     int32_t guided, guiding;
     solve->on = solve->finished = false;
@@ -23438,6 +23439,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
+    if (!solve->on && form->statics) form->statics->started = started; /* a refused solve has found no forces */
     if (solve->loop.stiff) gproji_begin_stiff(form->system, beginning->stiffness, anchored);
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */

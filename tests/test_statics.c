@@ -1974,6 +1974,19 @@ static bool gprojt_half_built(const gproj_host *host, void *user) {
     return done;
 }
 
+/* A solve that is refused for its options has found no forces. */
+GPROJT_TEST(refused_solves_start_no_forces) {
+    gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
+    gproj_form *form = gprojt_form_with_equilibrium(mesh);
+    int32_t v = 12;
+    gproj_handles handles = {1, NULL, &v, NULL, NULL};
+    gproj_error error;
+    GPROJT_CHECK(gproj_solve(form, -1, NULL).outcome == GPROJ_FAILED && gproj_form_error(form)->code == GPROJ_OK);
+    GPROJT_CHECK(!gproj_drag_begin(form, &handles, NULL, &error) && strstr(error.message, "forces have no values"));
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_half_built, NULL) > 20); }
 
 GPROJT_TEST(refused_questions_leave_the_form) {
@@ -2311,6 +2324,7 @@ int main(void) {
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(refused_solves_start_no_forces);
     GPROJT_RUN(half_built_equilibrium);
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
