@@ -306,8 +306,8 @@ GPROJ_API int32_t gproj_version(void);
 /* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
    be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
    copies, or never gives back (an arena). `limit` > 0: an object that would hold more than `limit` bytes fails
-   with GPROJ_ERROR_MEMORY instead. A form, its system, the factorisation in that, each copy of a curve in the form and a
-   drag are objects of their own here. */
+   with GPROJ_ERROR_MEMORY instead. A form, its system, the factorisation in that, each copy of a curve in the form and
+   a drag are objects of their own here. */
 typedef struct gproj_allocator {
     void *(*allocate)(void *user, size_t size);
     void *(*reallocate)(void *user, void *block, size_t old_size, size_t new_size);
@@ -528,8 +528,8 @@ typedef struct gproj_least_squares_result {
     /* Optimality (Karush, Kuhn, Tucker): x is exactly within the bounds, and each entry of the gradient g = A'(A x - b)
        + damping^2 x is 0 for a variable between its bounds, >= 0 at a lower and <= 0 at an upper bound. kkt is the
        largest violation, divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y| for the y nearest to 0
-       within the bounds; both in units of the variables that give the columns of A length 1 (those shorter than 1e-30 of
-       the longest count as empty). */
+       within the bounds; both in units of the variables that give the columns of A length 1 (those shorter than 1e-30
+       of the longest count as empty). */
     double kkt;
     gproj_memory memory; /* without the factorisation's: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
@@ -1471,12 +1471,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from the end of the first, or from the positions that you have set since. Positions are written
    back however the solve ends, but for an error (GPROJ_FAILED) and steps farther than vertices may be, which leave the
-   mesh as it was. At the beginning
-   vertices, normals, axes and the unknowns of gproj_form_add_unknowns get their values anew; variables of
-   gproj_system_add_variables, and the forces of an earlier solve, keep theirs. "The original" for fixed vertices,
-   gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish guides, closeness to
-   the positions at the beginning of this solve is added, with the weight 0.03 * 0.3^n up to iteration 5, or half of
-   the iterations if that is less (options: skip_closeness).
+   mesh as it was. At the beginning vertices, normals, axes and the unknowns of gproj_form_add_unknowns get their values
+   anew; variables of gproj_system_add_variables, and the forces of an earlier solve, keep theirs. "The original" for
+   fixed vertices, gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish
+   guides, closeness to the positions at the beginning of this solve is added, with the weight 0.03 * 0.3^n up to
+   iteration 5, or half of the iterations if that is less (options: skip_closeness).
 
    If only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness, steps
    are found by the constraints' multipliers, provided that these are clearly fewer than the variables. With fairness,
@@ -11955,8 +11954,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
             (o->time_budget > 0 && !s->host.clock.now))
             gproji_fail(&refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
                         "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
-                        "and a time "
-                        "budget needs a clock in the host",
+                        "and a time budget needs a clock in the host",
                         iterations, o->tolerance, o->epsilon, o->time_budget);
         else if (gproji_values_are_valid(s)) {
             s->stiffness = loop->stiff, s->anchored = false;

@@ -1974,6 +1974,8 @@ static bool gprojt_half_built(const gproj_host *host, void *user) {
     return done;
 }
 
+GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_half_built, NULL) > 20); }
+
 /* A solve that is refused for its options has found no forces. */
 GPROJT_TEST(refused_solves_start_no_forces) {
     gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
@@ -1986,8 +1988,6 @@ GPROJT_TEST(refused_solves_start_no_forces) {
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }
-
-GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_half_built, NULL) > 20); }
 
 GPROJT_TEST(refused_questions_leave_the_form) {
     gproj_mesh *mesh = gprojt_noisy(QUADS, 3, 0.1, 1);
