@@ -760,8 +760,9 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *system, i
    time, if the steps so far were found by multipliers (see gproj_solve). */
 GPROJ_API gproj_code gproj_system_set_schedule(gproj_system *system, int32_t group, gproj_schedule schedule);
 
-/* Adds a row of `count` terms and the constant c; `element` is the number of the face, say, that it belongs to, for
-   reports. Returns the row's number within the group. Rows added after a solve make the next solve analyse anew. */
+/* Adds a row of `count` terms and the constant c to a group of gproj_system_add_group (a form's own groups take none);
+   `element` is the number of the face, say, that it belongs to, for reports. Returns the row's number within the group.
+   Rows added after a solve make the next solve analyse anew. */
 GPROJ_API int32_t gproj_system_add_row(gproj_system *system, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element);
 /* Replaces the coefficients (in the order of the row's terms; NULL: as they are) and the constant of a row. */
@@ -7650,7 +7651,8 @@ static const double gproji_guard_slack = 0.2;  /* how far a step may leave a gua
 /* What a group's rows are to steps; >>loop has a table of who adds them and when they act. Those from GPROJI_GUARD on
    are not in merit, residual and verdict. When bounds begin and cease to act: gproji_switch_bounds. */
 typedef enum gproji_role {
-    GPROJI_ORDINARY,
+    GPROJI_CALLERS,   /* ordinary rows of the caller's */
+    GPROJI_ORDINARY,  /* of the library's; callers add rows to groups of their own only */
     GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
@@ -8283,26 +8285,20 @@ GPROJI_INLINE int32_t gproji_end_row(gproj_system *s, gproji_group *g, gproji_ro
     return g->row_count++;
 }
 
-GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
+/* gproj_system_add_row for any group, also during a solve. Returns -1 after an error. */
+GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
-    const uint32_t end = s ? (uint32_t)s->variable_count : 0;
+    const uint32_t end = (uint32_t)s->variable_count;
     gproji_group *g;
     gproji_row *row;
     gproj_term *to;
     int32_t *local, *place, named = 0, i, t, v, r;
     bool valid = gproji_is_finite(constant), run;
-    if (!gproji_system_is_open(s)) return -1;
-    if (!gproji_system_has_group(s, group) || count < 0) {
-        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                    "a row of %d terms for group %d of %d groups", count, group, s->group_count);
-        return -1;
-    }
+    if (s->error.code || group < 0) return -1; /* where no group could be added there is an error of the form's */
     g = &s->group[group];
-    if ((count > 0 && !terms) || g->role == GPROJI_SAFEGUARD) {
+    if (count > 0 && !terms) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
-                    g->role == GPROJI_SAFEGUARD ? "row %d of group '%s': only solves add rows to this group"
-                                                : "row %d of group '%s' has %d terms, but no list of them",
-                    g->row_count, g->name, count);
+                    "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name, count);
         return -1;
     }
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
@@ -8351,21 +8347,23 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
     return r;
 }
 
-/* Adds a row without weight to a safeguard, which gets rows during a solve, when nothing else may. */
-GPROJI_INTERNAL int32_t gproji_add_safeguard_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
-                                                 double constant, int32_t element) {
-    bool solving = s->solving;
-    int32_t row;
-    s->solving = false;
-    s->group[group].role = GPROJI_ORDINARY; /* callers may add none to a safeguard */
-    row = gproj_system_add_row(s, group, count, terms, constant, element);
-    s->group[group].role = GPROJI_SAFEGUARD;
-    s->solving = solving;
-    if (row >= 0) s->group[group].row[row].weight = 0;
-    return row;
+GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
+                                       double constant, int32_t element) {
+    if (!gproji_system_is_open(s)) return -1;
+    if (!gproji_system_has_group(s, group) || count < 0) {
+        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                    "a row of %d terms for group %d of %d groups", count, group, s->group_count);
+        return -1;
+    }
+    if (s->group[group].role == GPROJI_CALLERS) return gproji_add_row(s, group, count, terms, constant, element);
+    gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                "group '%s' is the form's: add rows by gproj_form_add_row to groups of gproj_add_rows, or by "
+                "gproj_system_add_row to groups of gproj_system_add_group",
+                s->group[group].name);
+    return -1;
 }
 
-/* gproj_system_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
+/* gproji_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
    global. Terms name locals by number. The builder writes the variables to the address returned unless that is NULL,
    row after row: different ones, in the order in which terms name them; a block with several in one row must be
    joined already. like: a row in the group whose terms are shared if they are equal; -1: none. */
@@ -19205,7 +19203,7 @@ GPROJI_INTERNAL int32_t gproji_add_points(gproji_part *part, const double *targe
         for (k = 0; k < 3; ++k) {
             gproj_term term;
             gproji_set_term(&term, 3 * part->element[i] + k, -1, 1);
-            gproj_system_add_row(form->system, group, 1, &term, -p[k], part->element[i]);
+            gproji_add_row(form->system, group, 1, &term, -p[k], part->element[i]);
         }
     }
     return gproji_built(form, group);
@@ -19527,7 +19525,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
         gproj_term term[3];
         gliding->segment[i] = gliding->pinned[i] = -1;
         gproji_set_point(term, 3 * part->element[i]);
-        for (k = 0; k < 3; ++k) gproj_system_add_row(form->system, part->group, 3, term, 0, part->element[i]);
+        for (k = 0; k < 3; ++k) gproji_add_row(form->system, part->group, 3, term, 0, part->element[i]);
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->element[i],
                                !gproji_curve_at(part, i));
@@ -19620,7 +19618,7 @@ GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *sur
     for (i = 0; i < part->count; ++i) {
         gproj_term term[3];
         gproji_set_point(term, 3 * part->element[i]);
-        gproj_system_add_row(form->system, part->group, 3, term, 0, part->element[i]);
+        gproji_add_row(form->system, part->group, 3, term, 0, part->element[i]);
     }
     return gproji_built(form, part->group);
 }
@@ -19643,7 +19641,7 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
     gproj_term *term = form->work.term;
     if (tangential) {
         for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
-        for (k = 0; k < 2; ++k) gproj_system_add_row(form->system, group, 3 * points, term, 0, d->element);
+        for (k = 0; k < 2; ++k) gproji_add_row(form->system, group, 3 * points, term, 0, d->element);
         tangential->element[tangential->count++] = d->element;
         return;
     }
@@ -19900,7 +19898,7 @@ GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32
                                            "lengths: edge %d would have the length %g, which is not > 0 and finite",
                                            edge, length / form->scale));
         gproji_set_length_terms(form->mesh, edge, 0.5 / length, term);
-        gproj_system_add_row(form->system, group, 9, term, -length / 2, edge);
+        gproji_add_row(form->system, group, 9, term, -length / 2, edge);
     }
     return gproji_built(form, group);
 }
@@ -19935,7 +19933,7 @@ GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const
         gproj_term term[10];
         gproji_set_length_terms(form->mesh, part->element[k], 0.5, term);
         gproji_set_term(&term[9], *common, *common, -0.5);
-        gproj_system_add_row(form->system, part->group, 10, term, 0, part->element[k]);
+        gproji_add_row(form->system, part->group, 10, term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -19998,7 +19996,7 @@ GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int
         gproj_term term[16];
         gproji_set_products(term, 5, product, point, half);
         gproji_set_term(&term[15], *first + 3, -1, half);
-        gproj_system_add_row(form->system, part->group, 16, term, 0, part->element[k]);
+        gproji_add_row(form->system, part->group, 16, term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -20042,7 +20040,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
     for (p = 0; p < set->planes; ++p) {
         for (q = 0; q <= p; ++q) {
             for (k = 0; k < 3; ++k) gproji_set_term(&term[k], first + 4 * q + k, first + 4 * p + k, 1);
-            gproj_system_add_row(form->system, part->group, 3, term, p == q ? -1 : 0, vertex[0]);
+            gproji_add_row(form->system, part->group, 3, term, p == q ? -1 : 0, vertex[0]);
         }
     }
     for (i = 0; i < count; ++i) {
@@ -20052,7 +20050,7 @@ GPROJI_INTERNAL void gproji_add_plane_set(gproji_part *part, int32_t from) {
                 gproji_set_term(&term[2 * k + 1], first + 4 * p + k, -1, -middle[k]);
             }
             gproji_set_term(&term[6], first + 4 * p + 3, -1, -1);
-            gproj_system_add_row(form->system, part->group, 7, term, 0, vertex[i]);
+            gproji_add_row(form->system, part->group, 7, term, 0, vertex[i]);
         }
     }
 }
@@ -20179,7 +20177,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
             for (c = 0; c < 3; ++c)
                 gproji_set_term(&term[3 * k + c], 3 * form->mesh->origin[2 * edge + k] + c, -1,
                                 k ? across[i % 2][c] : -across[i % 2][c]);
-        gproj_system_add_row(form->system, group, 6, term, 0, edge);
+        gproji_add_row(form->system, group, 6, term, 0, edge);
     }
     return gproji_built(form, group);
 }
@@ -20199,7 +20197,7 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
         if (!gproji_select_gliding(form, v) || gproj_mesh_one_ring(form->mesh, v, ring, 3) != 3) continue;
         for (point[0] = 3 * v, k = 0; k < 3; ++k) point[k + 1] = 3 * ring[k];
         gproji_set_products(term, 4, product, point, 1);
-        gproj_system_add_row(form->system, group, 12, term, 0, v);
+        gproji_add_row(form->system, group, 12, term, 0, v);
     }
     return gproji_built(form, group);
 }
@@ -20214,7 +20212,7 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
         gproj_term term;
         if (i % 3 == 2) continue; /* z is free */
         gproji_set_term(&term, i, -1, 1);
-        gproj_system_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
+        gproji_add_row(form->system, group, 1, &term, -form->original[i], i / 3);
     }
     return gproji_built(form, group);
 }
@@ -20290,7 +20288,7 @@ GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight) {
             gproj_term term[12];
             point[0] = form->axis[f], point[1] = 3 * mesh->origin[h], point[2] = 3 * mesh->origin[mesh->next[h]];
             gproji_set_products(term, 4, product, point, 1);
-            gproj_system_add_row(form->system, part->group, 12, term, 0, f);
+            gproji_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
     gproji_update_areas(form);
@@ -20366,7 +20364,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
         int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
         if (axis < 0) continue;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
-        gproj_system_add_row(form->system, part->group, 3, term, -1, v);
+        gproji_add_row(form->system, part->group, 3, term, -1, v);
         part->element[part->count++] = ~v;
         do {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
@@ -20376,7 +20374,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
                 gproji_set_point(&term[6], 3 * mesh->origin[h ^ 1]);
                 gproji_set_point(&term[9], form->normal[face]);
                 gproji_set_point(&term[12], form->normal[other]);
-                gproj_system_add_row(form->system, part->group, 15, term, 0, v);
+                gproji_add_row(form->system, part->group, 15, term, 0, v);
                 part->element[part->count++] = h;
             }
             h = gproji_rotate(mesh, h);
@@ -20400,7 +20398,7 @@ GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
             int32_t h = form->mesh->face_halfedge[f];
             for (c = 0; c < 4; ++c, h = form->mesh->next[h])
                 gproji_set_term(&term[c], 3 * form->mesh->origin[h] + k, -1, c % 2 ? -1 : 1);
-            gproj_system_add_row(form->system, group, 4, term, 0, f);
+            gproji_add_row(form->system, group, 4, term, 0, f);
         }
     }
     return gproji_built(form, group);
@@ -20472,7 +20470,7 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     for (f = 0; f < form->mesh->face_count && gproji_form_ready(form); ++f) {
         count = gproji_set_area_terms(form->mesh, f, term);
         gproji_set_term(&term[count], *common, -1, -1);
-        gproj_system_add_row(form->system, part->group, count + 1, term, 0, f);
+        gproji_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     return gproji_built(form, part->group);
 }
@@ -20502,7 +20500,7 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
     if (!term) return gproji_none(gproji_fail_memory(&form->error));
     gproji_add_group(part, weight);
     for (t = 0; t < count; ++t) gproji_set_term(&term[t], t, -1, 0);
-    for (; rows > 0; --rows) gproj_system_add_row(form->system, part->group, count, term, 0, 0);
+    for (; rows > 0; --rows) gproji_add_row(form->system, part->group, count, term, 0, 0);
     gproji_give(&form->heap, term, (size_t)count, sizeof *term);
     return gproji_built(form, part->group);
 }
@@ -20589,7 +20587,7 @@ GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const
             double sign = side == 0 ? 1 : -1, length = bound[side];
             if (!gproji_has_bound(bound, side)) continue;
             gproji_set_length_terms(form->mesh, edge, sign * 0.5 / length, term);
-            gproj_system_add_row(form->system, group, 9, term, -sign * length / 2, edge);
+            gproji_add_row(form->system, group, 9, term, -sign * length / 2, edge);
         }
     }
     return gproji_built(form, group);
@@ -20629,7 +20627,7 @@ GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const i
         terms = gproji_set_area_terms(form->mesh, part->element[k], form->work.term);
         for (side = 0; side < 2; ++side)
             if (gproji_has_bound(part->given, side))
-                gproj_system_add_row(form->system, part->group, terms, form->work.term, 0, part->element[k]);
+                gproji_add_row(form->system, part->group, terms, form->work.term, 0, part->element[k]);
     }
     return gproji_built(form, part->group);
 }
@@ -20953,7 +20951,7 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
         gproji_sum_add_product(&sum, a * o[0], o[1]);
     }
     if (gproji_form_ready(form))
-        row = gproj_system_add_row(form->system, group, made, inside, gproji_sum_value(&sum), element);
+        row = gproji_add_row(form->system, group, made, inside, gproji_sum_value(&sum), element);
     gproji_give(&form->heap, inside, room, sizeof *inside);
     return row;
 }
@@ -21198,7 +21196,7 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
     }
     for (l = s->load_start[vertex]; l < s->load_start[vertex + 1]; ++l)
         for (k = 0; k < 3; ++k) gproji_set_term(&term[count++], 3 * s->load_vertex[l] + k, -1, 0);
-    gproj_system_add_row(form->system, s->group, count, term, 0, vertex);
+    gproji_add_row(form->system, s->group, count, term, 0, vertex);
 }
 
 /* Notes `other` once among the vertices that the weight on `vertex` depends on. */
@@ -21400,7 +21398,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rul
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
         gproji_set_term(&term, form->statics->force[edge], -1, sign);
-        if (term.i >= 0) gproj_system_add_row(form->system, group, 1, &term, 0, edge);
+        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, edge);
     }
     return gproji_built(form, group);
 }
@@ -21485,7 +21483,7 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
             part->element[part->count] = edge;
             part->factor[part->count++] = (side ? -1 : 1) * (sections ? sections[k] : 1);
             gproji_set_force_terms(form, edge, term);
-            gproj_system_add_row(form->system, part->group, 6, term, 0, edge);
+            gproji_add_row(form->system, part->group, 6, term, 0, edge);
         }
     }
     return gproji_built(form, part->group);
@@ -21528,7 +21526,7 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
             part->element[part->count++] = opposite;
             gproji_set_force_terms(form, e, term);
             gproji_set_force_terms(form, opposite, term + 6);
-            gproj_system_add_row(form->system, part->group, 12, term, 0, f);
+            gproji_add_row(form->system, part->group, 12, term, 0, f);
         }
     }
     return gproji_built(form, part->group);
@@ -21868,7 +21866,7 @@ GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
     int32_t group = gproji_new_group(form, &gproji_force_guidance_rule, 0), e;
     for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
         gproji_set_term(&term, s->force[e], -1, 1);
-        if (term.i >= 0) gproj_system_add_row(form->system, group, 1, &term, 0, e);
+        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, e);
     }
 }
 
@@ -22167,7 +22165,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
                 gproji_set_term(&term[terms++], a + (k + 1) % 3, b + k, 0);
             }
         }
-        gproj_system_add_row(form->system, part->group, terms, term, -gproji_guard_wanted, f);
+        gproji_add_row(form->system, part->group, terms, term, -gproji_guard_wanted, f);
     }
 }
 
@@ -22374,8 +22372,9 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
         }
     for (k = 0; bends && k < 3; ++k) gproji_set_term(&term[count++], normal[face] + k, -1, 0);
     if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
-    row = gproji_add_safeguard_row(part->form->system, part->group, count, term, 0, face);
+    row = gproji_add_row(part->form->system, part->group, count, term, 0, face);
     if (row < 0) return -1;
+    gproji_place_row(part->form->system, part->group, row, 0, 0);
     corners->item[row] = item;
     corners->row[item] = row;
     return row;
@@ -22980,7 +22979,7 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
         bool stress = part && part->rule == &gproji_stress_rule;
         if (g->kind != GPROJ_BOUND || g->place != GPROJ_PLACE_EDGE || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
-            if (!(g->row[r].weight > 0) || (stress && r >= part->count)) continue; /* behind them are the caller's */
+            if (!(g->row[r].weight > 0)) continue;
             e = stress ? part->element[r] : gproji_bounded_force(form, i, r, &sign);
             if (e < 0) continue;
             if (!stress && sign > 0) positive[force[e]] = 1;
@@ -23286,8 +23285,8 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
 GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
     const double *x = gproj_system_values(form->system);
     const gproji_group *g = gproji_group_at(form->system, group);
-    int32_t count = 3 * form->mesh->vertex_count, rows = count + 3 * form->mesh->edge_count, r;
-    for (r = 0; r < rows && r < g->row_count; ++r) {
+    int32_t count = 3 * form->mesh->vertex_count, r;
+    for (r = 0; r < g->row_count; ++r) {
         int32_t e = (r - count) / 3, k = (r - count) % 3;
         double from =
             r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
@@ -24414,9 +24413,6 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     x = gproj_system_values(s);
     /* 1. The rows of the groups: fairness as at the beginning. */
     for (r = 0; r < fairness->row_count; ++r) {
-        int64_t l = fairness->row[r].local;
-        for (; l < fairness->row[r + 1].local && fairness->local.variable[l] < 3 * drag->form->mesh->vertex_count;) ++l;
-        if (l < fairness->row[r + 1].local) continue; /* a caller's row */
         gproj_system_set_row(s, soft, r, NULL, 0);
         gproj_system_set_row(s, soft, r, NULL, -gproji_row_value(fairness, r, drag->first));
     }

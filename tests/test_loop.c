@@ -1287,6 +1287,12 @@ static int32_t gprojt_add_role(gproj_system *s, const char *name, gproj_kind kin
     return group;
 }
 
+/* The row x_i in the group that measures steps, times a. */
+static void gprojt_measure(gproj_system *s, int32_t group, int32_t i, double a) {
+    gproj_term term = gprojt_term(i, -1, a);
+    gproji_add_row(s, group, 1, &term, 0, 0);
+}
+
 /* After a good step: the stiffness before, how the step went, and the stiffness then. */
 typedef struct gprojt_stiffness {
     double before, agreement, length;
@@ -1327,7 +1333,7 @@ GPROJT_TEST(stiffness_of_the_next_step) {
         gprojt_add_group(s, "row", GPROJ_CONSTRAINT, 1);
         gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
         gprojt_add_linear(s, 0, 0, 1, -1, 0);
-        gprojt_add_linear(s, 1, 1, 1, 0, 0);
+        gprojt_measure(s, 1, 1, 1);
         GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 20, NULL) && loop.stiff && gproji_compile(s, false) == GPROJ_OK);
         s->solving = true;
         gproji_begin_run(&loop);
@@ -1364,7 +1370,7 @@ GPROJT_TEST(metrics_rest_at_the_end) {
     gproj_result result;
     int32_t k, i;
     gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
-    for (k = 0; k < 18; ++k) gprojt_add_linear(s, 1, k, 0.1, 0, 0);
+    for (k = 0; k < 18; ++k) gprojt_measure(s, 1, k, 0.1);
     result = gproj_system_solve(s, 60, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.iterations > 1);
     GPROJT_CHECK(s->schur.on && s->stiffness == 0);
@@ -1390,7 +1396,7 @@ GPROJT_TEST(no_stiffness_at_the_end) {
         gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
         gprojt_add_linear(s, 0, 1, 1, far ? -3 : -2 - 1e-8, 0);
         gproj_system_add_row(s, 1, 2, term, 1e60, 0); /* 1e160 at the end of the step */
-        gprojt_add_linear(s, 2, 1, 1, 0, 0);
+        gprojt_measure(s, 2, 1, 1);
         result = gproj_system_solve(s, 9, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0);
         GPROJT_CHECK(far ? s->stiffness > 1 : s->stiffness == 1);
@@ -1410,7 +1416,7 @@ GPROJT_TEST(no_stiffness_where_steps_overflow) {
     gprojt_add_group(s, "faint", GPROJ_CONSTRAINT, 1);
     gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
     gprojt_add_linear(s, 0, 0, 1e-160, 1e300, 0); /* see steps_that_overflow */
-    gprojt_add_linear(s, 1, 1, 1, 0, 0);
+    gprojt_measure(s, 1, 1, 1);
     result = gproj_system_solve(s, 9, &options);
     GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.iterations == 0 && s->stiffness == 1);
     GPROJT_CHECK(gproj_system_values(s)[0] == 1 && gproj_system_values(s)[1] == 2);
@@ -1469,7 +1475,7 @@ static bool gprojt_wake_at_the_start(const gproj_host *host, void *user) {
     if (!s) return false;
     group = gprojt_add_group(s, "guard", GPROJ_BOUND, 1);
     if (group >= 0) gproji_declare_role(s, group, GPROJI_GUARD);
-    gproj_system_add_row(s, group, 2, sum, -9, -1); /* x_0 + x_5 >= 9, which are 7.5 */
+    if (group >= 0) gproji_add_row(s, group, 2, sum, -9, -1); /* x_0 + x_5 >= 9, which are 7.5 */
     result = gproj_system_solve(s, 30, NULL);
     if (result.outcome == GPROJ_FAILED) {
         GPROJT_CHECK(gproj_system_error(s)->code == GPROJ_ERROR_MEMORY);
@@ -1683,7 +1689,7 @@ GPROJT_TEST(same_bits_for_all_workers) {
 GPROJT_TEST(metric_comes_back) {
     static const double start[2] = {3, 1};
     gproj_system *s = gprojt_system(NULL, 2, 1, start);
-    gproj_term product = gprojt_term(0, 1, 1), linear[2];
+    gproj_term product = gprojt_term(0, 1, 1);
     gproji_course course;
     gproji_loop loop;
     uint64_t allocations;
@@ -1693,10 +1699,7 @@ GPROJT_TEST(metric_comes_back) {
     gprojt_add_group(s, "metric", GPROJ_WISH, 0.1);
     gproji_declare_role(s, 1, GPROJI_METRIC);
     gproj_system_add_row(s, 0, 1, &product, -2, 0);
-    for (i = 0; i < 2; ++i) {
-        linear[i] = gprojt_term(i, -1, 1);
-        gproj_system_add_row(s, 1, 1, &linear[i], 0, i);
-    }
+    for (i = 0; i < 2; ++i) gprojt_measure(s, 1, i, 1);
     GPROJT_CHECK(gproji_begin_loop(&loop, s, 10, NULL) && loop.stiff);
     GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
     gproji_begin_run(&loop);

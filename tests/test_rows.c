@@ -310,7 +310,11 @@ GPROJT_TEST(rows_of_no_element) {
     gproj_system *system = gproj_form_system(form);
     gproj_solve_options options;
     double *vertex = (double *)calloc((size_t)mesh->vertex_count, sizeof(double)), weight[2] = {0, 3};
-    int32_t group = gproj_add_rows(form, "heights", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1), k, some[2] = {3, 2};
+    gproj_group heights;
+    int32_t group, k, some[2] = {3, 2};
+    memset(&heights, 0, sizeof heights);
+    heights.name = "heights", heights.place = GPROJ_PLACE_VERTEX, heights.schedule = gproj_keep(1);
+    group = gproj_system_add_group(system, &heights);
     for (k = 0; k < 5; ++k) {
         gproj_term z = gprojt_term(3 * k + 2, k == 4 ? 14 : -1, k == 4 ? DBL_MAX : 1);
         GPROJT_CHECK(gproj_system_add_row(system, group, 1, &z, k == 4 ? DBL_MAX : -50, elements[k]) == k);
@@ -628,6 +632,46 @@ static void gprojt_add_own(gproj_form *form, void *user) {
     gproj_add_midsphere(form, 3, NULL, 1);
 }
 
+/* The library's groups, also those that solves and drags add, and the ones of gproj_add_rows, whose rows are in the mesh's
+   units, take no rows through the system. */
+GPROJT_TEST(groups_of_forms_take_no_rows_of_the_system) {
+    int32_t group, groups = 1;
+    for (group = 0; group < groups; ++group) {
+        static const gproj_term x = {0, -1, 1};
+        static const int32_t held = 0;
+        gproj_handles handles;
+        gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 1);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_system *s = gproj_form_system(form);
+        gproj_solve_options options;
+        gproj_drag *drag;
+        char name[GPROJ_NAME_SIZE + 2];
+        int32_t own;
+        memset(&options, 0, sizeof options), memset(&handles, 0, sizeof handles);
+        options.smooth = true;
+        handles.count = 1, handles.vertex = &held;
+        gproj_add_planarity(form, 1);
+        gproj_add_volume(form, gproj_volume(mesh), 1);
+        gproj_add_fairness(form, 0.1);
+        gproj_add_rows(form, "mine", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
+        own = gprojt_add_group(s, "own", GPROJ_CONSTRAINT, 1);
+        gproj_solve(form, 30, &options);
+        drag = gproj_drag_begin(form, &handles, NULL, NULL);
+        gproj_drag_release(drag);
+        gproj_solve_stop(form);
+        GPROJT_REQUIRE(drag && gproj_form_error(form)->code == GPROJ_OK);
+        groups = gproj_system_group_count(s);
+        snprintf(name, sizeof name, "'%s'", gproj_form_group_info(form, group).name);
+        GPROJT_CHECK((gproj_system_add_row(s, group, 1, &x, 0, -1) >= 0) == (group == own));
+        GPROJT_CHECK(gproj_form_error(form)->code == (group == own ? GPROJ_OK : GPROJ_ERROR_ARGUMENT));
+        if (group != own) GPROJT_CHECK(strstr(gproj_form_error(form)->message, name) != NULL);
+        gproj_drag_cancel(drag);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(groups >= 8);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_noisy(0, 3, 0.05, 1);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_own, NULL, 3, NULL) >= 20);
@@ -654,6 +698,7 @@ int main(void) {
     GPROJT_RUN(midspheres_begin_at_their_place);
     GPROJT_RUN(flat_midspheres_begin_in_their_plane);
     GPROJT_RUN(edge_midpoints_on_a_sphere);
+    GPROJT_RUN(groups_of_forms_take_no_rows_of_the_system);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }

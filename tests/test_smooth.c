@@ -501,26 +501,6 @@ GPROJT_TEST(builders_in_callbacks) {
     gproj_mesh_destroy(mesh);
 }
 
-/* Safeguards get rows by solves alone. */
-GPROJT_TEST(safeguards_take_no_rows) {
-    gproj_mesh *mesh = gprojt_twisted(6, 0.4);
-    gproj_form *form = gproj_form_create(mesh, NULL);
-    gproj_solve_options options = gprojt_smooth();
-    gproj_system *s = gproj_form_system(form);
-    gproj_term term;
-    int32_t group = -1, g;
-    term.i = 0, term.j = -1, term.a = 1;
-    gproj_add_planarity(form, 1);
-    gproj_solve(form, 100, &options);
-    for (g = 0; g < gproj_system_group_count(s); ++g)
-        if (!strcmp(gproj_form_group_info(form, g).name, "corners")) group = g;
-    GPROJT_REQUIRE(group >= 0);
-    GPROJT_CHECK(gproj_system_add_row(s, group, 1, &term, 0, -1) == -1);
-    GPROJT_CHECK(strstr(gproj_system_error(s)->message, "only solves add rows"));
-    gproj_form_destroy(form);
-    gproj_mesh_destroy(mesh);
-}
-
 /* Wishes that nothing holds shrink a mesh, and no other attempt hides that: the verdict says so. */
 GPROJT_TEST(wishes_alone_shrink) {
     gproj_mesh *mesh = gprojt_noisy(4, 3, 0.1, 3); /* a torus */
@@ -1172,7 +1152,6 @@ int main(void) {
     GPROJT_RUN(bowls_stand_nearby);
     GPROJT_RUN(closeness_that_is_skipped_stays_out);
     GPROJT_RUN(builders_in_callbacks);
-    GPROJT_RUN(safeguards_take_no_rows);
     GPROJT_RUN(wishes_alone_shrink);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
