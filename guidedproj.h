@@ -12028,7 +12028,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
         s->solving = true;
         gproji_begin_run(loop);
         loop->result.outcome = loop->options.nearest ? gproji_run_nearest(loop) : gproji_run_loop(loop);
-        s->solving = s->progress.tangential = false;
+        s->solving = false;
         loop->time.spent += loop->time.lap - loop->time.started;
         if (loop->result.outcome == GPROJ_CONVERGED) gproji_values_are_valid(s);
     }

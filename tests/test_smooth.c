@@ -1029,6 +1029,27 @@ static bool gprojt_solve_twice(const gproj_host *host, void *user) {
     return done;
 }
 
+/* A face in the middle whose corners are held off a plane by a little: safeguards give way, while the metric rests. */
+static void gprojt_add_held_face(gproj_form *form, void *user) {
+    static const int32_t corner[4] = {6, 7, 11, 12};
+    (void)user;
+    gproj_add_planarity(form, 1);
+    gproj_add_fixed(form, 4, corner, 1);
+}
+
+GPROJT_TEST(allocations_fail_where_safeguards_give_way) {
+    gproj_mesh *mesh = gprojt_twisted(4, 0);
+    gproj_solve_options options = gprojt_smooth();
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v;
+        p[0] *= 4, p[1] *= 4;
+        p[2] = v == 6 ? 0.01 : v == 7 || v == 11 || v == 12 ? 0 : 0.2 * sin(p[0]) * cos(0.8 * p[1]);
+    }
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_held_face, NULL, 60, &options) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_twisted(4, 0.2);
     gproj_solve_options options = gprojt_smooth();
@@ -1167,6 +1188,7 @@ int main(void) {
     GPROJT_RUN(points_are_solved);
     GPROJT_RUN(faces_in_one_point);
     GPROJT_RUN(solved_again);
+    GPROJT_RUN(allocations_fail_where_safeguards_give_way);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(restored_without_memory);
     GPROJT_RUN(drawn_late_without_memory);

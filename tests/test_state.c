@@ -314,6 +314,108 @@ GPROJT_TEST(resumed_to_the_same_bytes) {
                 gprojt_check_resumed(design, nearest, at);
 }
 
+/* A form in frames, from the middle of a solve on: nearest in odd ways, smooth in the last two. */
+typedef struct gprojt_under_way {
+    gproj_mesh *mesh;
+    gproj_form *form;
+    int32_t fairness, targets; /* groups */
+} gprojt_under_way;
+
+enum {
+    GPROJT_WAYS = 6
+};
+
+static void gprojt_set_out(gprojt_under_way *under, int way) {
+    static const int32_t corner[2] = {0, 6};
+    gproj_solve_options options = gprojt_nearest_or_not(way % 2);
+    int k;
+    options.smooth = way >= 4;
+    under->mesh = gprojt_roof(6, 0.3);
+    under->form = gproj_form_create(under->mesh, NULL);
+    gproj_add_planarity(under->form, 1);
+    under->fairness = gproj_add_fairness(under->form, 0.2);
+    gproj_add_closeness(under->form, 0.1);
+    under->targets = gproj_add_targets(under->form, 2, corner, under->mesh->position, 1);
+    gproj_solve_begin(under->form, 60, &options, NULL);
+    for (k = 0; k < 5; ++k) gproj_solve_advance(under->form, 0);
+    GPROJT_CHECK(gproj_solve_is_on(under->form));
+}
+
+static void gprojt_check_same_end(gprojt_under_way *a, gprojt_under_way *b) {
+    double *expected;
+    gproj_result at_once = gprojt_go_on(a->form), result = gprojt_go_on(b->form);
+    expected = gprojt_keep(a->mesh);
+    GPROJT_CHECK(strcmp(result.message, at_once.message) == 0 && result.iterations == at_once.iterations);
+    GPROJT_CHECK(gprojt_unmoved(b->mesh, expected));
+    free(expected);
+    gproj_form_destroy(a->form), gproj_form_destroy(b->form);
+    gproj_mesh_destroy(a->mesh), gproj_mesh_destroy(b->mesh);
+}
+
+/* A change that the solve has not seen yet is in a state, too. */
+GPROJT_TEST(changes_between_frames_are_saved) {
+    int way, k;
+    for (way = 0; way < GPROJT_WAYS; ++way) {
+        static const double to[6] = {0.1, 0, 1, 6, 0, 2};
+        gprojt_under_way under[2];
+        uint8_t *state;
+        size_t size;
+        for (k = 0; k < 2; ++k) {
+            gprojt_set_out(&under[k], way);
+            if (way / 2 % 2) gproj_set_targets(under[k].form, under[k].targets, to);
+            else gproj_set_schedule(under[k].form, under[k].fairness, gproj_keep(2));
+        }
+        state = gprojt_save(under[1].form, &size);
+        GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+        free(state);
+        gprojt_check_same_end(&under[0], &under[1]);
+    }
+}
+
+/* Asking for gradients, and solves of the system that are refused, change nothing of what follows. */
+GPROJT_TEST(questions_between_frames) {
+    int way;
+    for (way = 0; way < 2 * GPROJT_WAYS; ++way) {
+        gprojt_under_way under[2];
+        gproj_system *s;
+        gprojt_set_out(&under[0], way / 2), gprojt_set_out(&under[1], way / 2);
+        s = gproj_form_system(under[1].form);
+        if (way % 2) GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-6);
+        else GPROJT_CHECK(gproj_system_solve(s, -1, NULL).outcome == GPROJ_FAILED);
+        gprojt_check_same_end(&under[0], &under[1]);
+    }
+}
+
+/* A state in frames goes on as its first attempt, not as the last of a solve in between, whose steps are bent. */
+GPROJT_TEST(resumed_after_attempts) {
+    gprojt_under_way under[2];
+    gproj_solve_options options = gprojt_nearest_or_not(0);
+    uint8_t *state;
+    double *start;
+    size_t size;
+    int32_t edge = 0;
+    int k;
+    options.smooth = true;
+    for (k = 0; k < 2; ++k) {
+        under[k].mesh = gprojt_roof(6, 0.08);
+        under[k].form = gproj_form_create(under[k].mesh, NULL);
+        gprojt_add_standing(under[k].form, under[k].mesh);
+        gproj_add_length_bounds(under[k].form, 1, &edge, 9, INFINITY, 1); /* in vain */
+        gproj_add_fixed(under[k].form, 2, under[k].mesh->origin, 1);
+        start = gprojt_keep(under[k].mesh);
+        GPROJT_CHECK(gproj_solve(under[k].form, 200, &options).attempts == 3); /* with all groups from now on */
+        gprojt_put_back(under[k].mesh, start);
+        free(start);
+        gproj_solve_begin(under[k].form, 40, &options, NULL);
+        gproj_solve_advance(under[k].form, 0), gproj_solve_advance(under[k].form, 0);
+    }
+    state = gprojt_save(under[0].form, &size);
+    GPROJT_CHECK(gproj_solve(under[1].form, 200, &options).attempts == 3);
+    GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+    free(state);
+    gprojt_check_same_end(&under[0], &under[1]);
+}
+
 /* A flat net that is to stand, with its boundary fixed. */
 static gproj_form *gprojt_flat_net(gproj_mesh **mesh) {
     gproj_form *form;
@@ -1114,6 +1216,9 @@ int main(void) {
     GPROJT_RUN(frames_follow_targets);
     GPROJT_RUN(solved_between_frames);
     GPROJT_RUN(resumed_to_the_same_bytes);
+    GPROJT_RUN(changes_between_frames_are_saved);
+    GPROJT_RUN(questions_between_frames);
+    GPROJT_RUN(resumed_after_attempts);
     GPROJT_RUN(resumed_with_forces_that_bend);
     GPROJT_RUN(resumed_while_it_is_mended);
     GPROJT_RUN(undo_and_redo);

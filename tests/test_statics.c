@@ -1500,11 +1500,11 @@ GPROJT_TEST(obstacles_are_named) {
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "has no support"));
 }
 
-/* What contradicts on one edge: signs, also by rows of the caller's and by bounds of stresses. What has no weight does not,
-   nor bounds that both signs satisfy, nor those of lengths. */
+/* What contradicts on one edge: signs, also by rows of the caller's (dense ones in the last way) and by bounds of stresses.
+   What has no weight does not, nor bounds that both signs satisfy, nor those of lengths. */
 GPROJT_TEST(contradictions_are_named) {
     int way;
-    for (way = 0; way < 10; ++way) {
+    for (way = 0; way < 11; ++way) {
         gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0);
         gproj_loads loads = gprojt_no_loads();
         gproj_form *form;
@@ -1520,12 +1520,13 @@ GPROJT_TEST(contradictions_are_named) {
         while (gproj_force_variable(form, inside) < 0) ++inside;
         memset(&group, 0, sizeof group);
         group.name = "own", group.kind = GPROJ_BOUND, group.place = GPROJ_PLACE_EDGE, group.schedule = gproj_keep(1);
+        group.global = way == 10;
         term = gprojt_term(gproj_force_variable(form, edge), -1, -1);
         gproj_add_length_bounds(form, 0, NULL, 0.01, INFINITY, 1);
-        if (way < 9) gproj_add_compression(form, 1, &edge, 1);
+        if (way != 9) gproj_add_compression(form, 1, &edge, 1);
         if (way == 0) gproj_add_tension(form, 1, &edge, 1);
-        if (way == 1) own = gproj_system_add_group(gproj_form_system(form), &group);
-        if (way == 1) gproj_system_add_row(gproj_form_system(form), own, 1, &term, 0, edge);
+        if (way == 1 || way == 10) own = gproj_system_add_group(gproj_form_system(form), &group);
+        if (way == 1 || way == 10) gproj_system_add_row(gproj_form_system(form), own, 1, &term, 0, edge);
         if (way == 2) gproj_add_stress_bounds(form, 1, &edge, NULL, -INFINITY, -1, 1);
         if (way == 3) gproj_add_stress_bounds(form, 1, &edge, NULL, -INFINITY, -1, 0);
         if (way == 4) gproj_add_stress_bounds(form, 1, &edge, NULL, -1, 1, 1);
@@ -1536,7 +1537,7 @@ GPROJT_TEST(contradictions_are_named) {
         if (way == 9) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
         result = gproj_solve(form, 20, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && gproj_form_error(form)->code == GPROJ_OK);
-        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way == 9));
+        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way > 8));
         if (strstr(result.message, "is to have both signs")) {
             char words[32];
             snprintf(words, sizeof words, "; edge %d is to have both", (int)edge);
