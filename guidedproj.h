@@ -1752,7 +1752,8 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
    (gproj_solve_begin). A restored form goes on as the saved one would have: to the bit on the same processor and build,
-   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The
+   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits.
+   (A state saved by on_iteration is that of an iteration which the solve has not judged yet: its end may come later.) The
    state lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the
    same calls have made from the same mesh.
 
@@ -21941,6 +21942,8 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     if (code) return code;
     s = form->statics;
     x = gproj_system_values(form->system);
+    /* A solve in frames is to see the rows anew, as after a change of weights. */
+    gproj_system_set_schedule(form->system, s->group, gproji_group_at(form->system, s->group)->schedule);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
         if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) {
@@ -23969,6 +23972,15 @@ typedef struct gproji_handle_list {
     double *gram; /* handles x handles: S'S for one axis */
 } gproji_handle_list;
 
+/* What a cancelled drag puts back. */
+typedef struct gproji_drag_before {
+    double *x;                   /* variables */
+    gproj_schedule *schedule;    /* groups: during the release, those of the form's wishes */
+    uint8_t *state;              /* of the form */
+    size_t state_size;           /* bytes */
+    gproj_solve_options options; /* of a solve in frames, with its callback, which states lack */
+} gproji_drag_before;
+
 struct gproj_drag {
     gproji_heap heap;
     gproj_error error;
@@ -23977,22 +23989,20 @@ struct gproj_drag {
     gproj_drag_options options;
     gproj_drag_info info;
     gproji_handle_list handle;
-    int32_t columns;          /* 3 * handles */
-    int32_t variables;        /* of the system */
-    double *first;            /* 3 * vertex_count: the vertices at the beginning */
-    double *begun;            /* variables: x before the drag */
-    double *last;             /* variables: x before a move */
-    double *base;             /* variables: x at the last linearisation */
-    double *held;             /* columns: S'v there */
-    double *wanted;           /* columns: S'v wanted by the handles */
-    double *motion;           /* columns x variables: Q */
-    double *lift;             /* columns x columns: L by columns */
-    double *pull;             /* columns x columns: (L'L)^-1 L', by rows */
-    double *work;             /* columns x (columns + 1): S'Q while Q is made; L'L; e - L m, and m */
-    int32_t *name;            /* columns: the handle's coordinate that began each column of Q */
-    gproj_schedule *schedule; /* during the release: the schedules of the form's wishes before it */
-    uint8_t *state;           /* of the form, saved at the beginning */
-    size_t state_size;
+    int32_t columns;   /* 3 * handles */
+    int32_t variables; /* of the system */
+    double *first;     /* 3 * vertex_count: the vertices at the beginning */
+    double *last;      /* variables: x before a move */
+    double *from;      /* variables: x where it was linearised last, */
+    double *base;      /* variables: and after the step that took the residual off there */
+    double *held;      /* columns: S'v at `base` */
+    double *wanted;    /* columns: S'v wanted by the handles */
+    double *motion;    /* columns x variables: Q */
+    double *lift;      /* columns x columns: L by columns */
+    double *pull;      /* columns x columns: (L'L)^-1 L', by rows */
+    double *work;      /* columns x (columns + 1): S'Q while Q is made; L'L; e - L m, and m */
+    int32_t *name;     /* columns: the handle's coordinate that began each column of Q */
+    gproji_drag_before before;
     bool released; /* the release has begun; the form's solve in frames is its */
     gproji_pool pool;
 };
@@ -24113,6 +24123,7 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
         for (i = 0; i < drag->info.freedom; ++i) drag->pull[m * (size_t)i + (size_t)j] = column[i];
     }
     gproji_gather_handles(drag, drag->base, drag->held);
+    memcpy(drag->from, x, n * sizeof *drag->from);
     drag->info.linearisations++;
     return GPROJ_OK;
 }
@@ -24153,14 +24164,15 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
 }
 
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
-    double behind, bound;
+    gproj_drag_info info;
+    double bound;
     int32_t k, j, c, handles;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
         gproji_check_positions(drag->info.handles, positions, GPROJ_PLACE_NONE, "handle", &drag->error) != GPROJ_OK)
         return drag->error.code;
-    behind = drag->info.behind;
+    info = drag->info;
     bound = drag->options.residual_bound;
     memcpy(drag->last, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->last);
     /* 1. wanted = S'v at the beginning + (S'S) d. */
@@ -24176,9 +24188,11 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     if (bound > 0 && !(gproji_see_hard(drag->form->system, NULL) <= bound)) {
         if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) {
             /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
-            memcpy(gproj_system_values(drag->form->system), drag->last, (size_t)drag->variables * sizeof *drag->last);
-            if (gproji_linearise_drag(drag, false, NULL) != GPROJ_OK) drag->info.freedom = 0;
-            drag->info.behind = behind;
+            double *x = gproj_system_values(drag->form->system);
+            memcpy(x, drag->from, (size_t)drag->variables * sizeof *x);
+            if (gproji_linearise_drag(drag, info.linearisations > 1, NULL) != GPROJ_OK) info.freedom = 0;
+            memcpy(x, drag->last, (size_t)drag->variables * sizeof *x);
+            drag->info = info;
             return drag->error.code;
         }
         gproji_follow_handles(drag);
@@ -24217,14 +24231,15 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->info.handles = h->count;
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
-    drag->state_size = gproj_state_size(form);
+    drag->before.state_size = gproj_state_size(form);
     list->start = (int64_t *)gproji_pool_take(pool, h->count + 1, sizeof *list->start);
     list->vertex = gproji_take_ints(pool, entries);
     list->weight = (double *)gproji_pool_take(pool, entries, sizeof *list->weight);
     list->from = (double *)gproji_pool_take(pool, m, sizeof *list->from);
     list->gram = (double *)gproji_pool_take(pool, (int64_t)h->count * h->count, sizeof *list->gram);
     drag->first = (double *)gproji_pool_take(pool, 3 * (int64_t)form->mesh->vertex_count, sizeof *drag->first);
-    drag->begun = (double *)gproji_pool_take(pool, n, sizeof *drag->begun);
+    drag->before.x = (double *)gproji_pool_take(pool, n, sizeof *drag->before.x);
+    drag->from = (double *)gproji_pool_take(pool, n, sizeof *drag->from);
     drag->last = (double *)gproji_pool_take(pool, n, sizeof *drag->last);
     drag->base = (double *)gproji_pool_take(pool, n, sizeof *drag->base);
     drag->held = (double *)gproji_pool_take(pool, m, sizeof *drag->held);
@@ -24234,9 +24249,9 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
     drag->name = gproji_take_ints(pool, m);
-    drag->schedule =
-        (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->schedule);
-    drag->state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->state_size, 1);
+    drag->before.schedule =
+        (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->before.schedule);
+    drag->before.state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->before.state_size, 1);
     return !pool->failed;
 }
 
@@ -24280,7 +24295,7 @@ GPROJI_INTERNAL gproj_code gproji_start_drag(gproj_drag *drag, const gproj_handl
     /* 3. The form as at the beginning of a solve. */
     form->solve.on = form->solve.finished = false;
     memcpy(form->before, form->mesh->position, 3 * (size_t)vertices * sizeof *form->before);
-    memcpy(drag->begun, gproj_system_values(s), (size_t)drag->variables * sizeof *drag->begun);
+    memcpy(drag->before.x, gproj_system_values(s), (size_t)drag->variables * sizeof *drag->before.x);
     gproji_load_positions(form);
     memcpy(drag->first, gproj_system_values(s), 3 * (size_t)vertices * sizeof *drag->first);
     drag->structure = gproji_structure_of(s);
@@ -24343,16 +24358,19 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
     }
     drag->form = form;
     if (options) drag->options = *options;
+    drag->before.options = form->solve.loop.options;
     if (drag->options.residual_bound > DBL_MAX) drag->options.residual_bound = 0;
     gproji_pool_start(&drag->pool, &drag->heap);
     gproji_error_clear(&drag->error);
-    code = gproji_take_drag(drag, handles) ? gproji_write_state(form, drag->state, drag->state_size, error)
-                                           : GPROJ_ERROR_MEMORY;
+    code = gproji_take_drag(drag, handles)
+               ? gproji_write_state(form, drag->before.state, drag->before.state_size, error)
+               : GPROJ_ERROR_MEMORY;
     if (code == GPROJ_OK) {
         form->drag = drag;
         code = gproji_start_drag(drag, handles, error);
         if (code == GPROJ_OK) return drag;
-        gproji_read_state(form, drag->state, drag->state_size, NULL);
+        gproji_read_state(form, drag->before.state, drag->before.state_size, NULL);
+        form->solve.loop.options = drag->before.options;
     }
     if (!gproji_form_ready(form)) gproji_pass_on(error, gproj_form_error(form));
     if (code == GPROJ_ERROR_MEMORY) gproji_fail_memory(error);
@@ -24370,8 +24388,8 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
         const gproji_group *group = gproji_group_at(form->system, g);
         gproj_schedule schedule;
         if (group->kind != GPROJ_WISH || gproji_own_of(form, g)) continue;
-        if (on) drag->schedule[g] = group->schedule;
-        schedule = drag->schedule[g];
+        if (on) drag->before.schedule[g] = group->schedule;
+        schedule = drag->before.schedule[g];
         if (on && !drag->options.keep_wishes) schedule.weight = 0;
         gproj_system_set_schedule(form->system, g, schedule);
     }
@@ -24386,8 +24404,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     form = drag->form;
     if (drag->released && gproji_form_ready(form)) gproji_schedule_release(drag, false);
     gproji_reset_mesh(form);
-    memcpy(gproj_system_values(form->system), drag->begun, (size_t)drag->variables * sizeof *drag->begun);
-    gproji_read_state(form, drag->state, drag->state_size, NULL); /* refused if rows were added, or after an error */
+    memcpy(gproj_system_values(form->system), drag->before.x, (size_t)drag->variables * sizeof *drag->before.x);
+    /* Refused if rows were added, or after an error. */
+    gproji_read_state(form, drag->before.state, drag->before.state_size, NULL);
+    form->solve.loop.options = drag->before.options;
     gproji_destroy_drag(drag);
 }
 

@@ -627,6 +627,82 @@ GPROJT_TEST(a_wild_move) {
     gprojt_clear_stage(&stage);
 }
 
+/* To the bit as if it had not been, whether the responses are those of the beginning or later ones. */
+GPROJT_TEST(a_wild_move_leaves_no_trace) {
+    int once, wild;
+    for (once = 0; once < 2; ++once) {
+        double *after[2] = {NULL, NULL};
+        gproj_drag_info info[2];
+        for (wild = 0; wild < 2; ++wild) {
+            gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+            int32_t v = gprojt_middle(stage.mesh);
+            gproj_handles handles = gprojt_vertex_handles(1, &v);
+            gproj_drag_options options;
+            gproj_drag *drag;
+            double p[3];
+            memset(&options, 0, sizeof options);
+            options.residual_bound = once ? 0.3 : 0.01;
+            drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+            GPROJT_REQUIRE(drag);
+            gprojt_pull(&stage, drag, v, 0.2 * stage.edge);
+            GPROJT_CHECK((gproj_drag_get_info(drag).linearisations == 1) == (once == 1));
+            memcpy(p, stage.start + 3 * v, sizeof p);
+            p[2] = 1e69;
+            if (wild) GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_ERROR_NUMBER);
+            gprojt_pull(&stage, drag, v, 0.25 * stage.edge);
+            after[wild] = gprojt_keep(stage.mesh), info[wild] = gproj_drag_get_info(drag);
+            if (wild) GPROJT_CHECK(gprojt_unmoved(stage.mesh, after[0]));
+            gproj_drag_cancel(drag);
+            gprojt_clear_stage(&stage);
+        }
+        GPROJT_CHECK(info[0].linearisations == info[1].linearisations && info[0].solves == info[1].solves);
+        free(after[0]), free(after[1]);
+    }
+}
+
+static bool gprojt_count_calls(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    (void)system, (void)iteration;
+    ++*(int32_t *)user;
+    return true;
+}
+
+/* A drag that is refused for its numbers, or cancelled, amid a solve in frames: this goes on, and calls back. */
+GPROJT_TEST(callbacks_outlast_drags) {
+    int32_t calls[4], how;
+    for (how = 0; how < 4; ++how) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 3);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_system *s = gproj_form_system(form);
+        gproj_solve_options options;
+        gproj_term term = gprojt_term(5, 6, 1);
+        int32_t v = 12, own;
+        double a = 1e200;
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        gproj_drag *drag;
+        memset(&options, 0, sizeof options);
+        options.on_iteration = gprojt_count_calls, options.user = &calls[how];
+        gproj_add_planarity(form, 1);
+        own = gprojt_add_group(s, "own", GPROJ_CONSTRAINT, 1);
+        gproj_system_add_row(s, own, 1, &term, 0, -1);
+        calls[how] = 0;
+        gproj_solve_begin(form, 20, &options, NULL);
+        gproj_solve_advance(form, 0);
+        if (how == 1) gproj_system_set_row(s, own, 0, &a, 0); /* cannot be linearised */
+        drag = how ? gproj_drag_begin(form, &handles, NULL, NULL) : NULL;
+        GPROJT_CHECK((drag != NULL) == (how > 1));
+        a = 1;
+        gproj_system_set_row(s, own, 0, &a, 0);
+        if (how == 3) GPROJT_CHECK(gproj_drag_release(drag));
+        if (how == 3) gproj_solve_advance(form, 0);
+        gproj_drag_cancel(drag);
+        GPROJT_CHECK(gproj_solve_is_on(form));
+        while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+        GPROJT_CHECK(calls[how] == calls[0] && calls[0] > 2);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* -- cost, and cancelling -- */
 
 GPROJT_TEST(moves_allocate_nothing) {
@@ -1345,6 +1421,8 @@ int main(void) {
     GPROJT_RUN(what_cannot_be_restored);
     GPROJT_RUN(restorations_by_far_are_not_made);
     GPROJT_RUN(a_wild_move);
+    GPROJT_RUN(a_wild_move_leaves_no_trace);
+    GPROJT_RUN(callbacks_outlast_drags);
     GPROJT_RUN(moves_allocate_nothing);
     GPROJT_RUN(cancelled_to_the_bit);
     GPROJT_RUN(cancelled_after_additions);

@@ -1977,6 +1977,33 @@ static bool gprojt_half_built(const gproj_host *host, void *user) {
 
 GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_half_built, NULL) > 20); }
 
+/* Forces that are set, or taken away, between frames are those of the next step. */
+GPROJT_TEST(forces_set_between_frames) {
+    int how, seen, k;
+    for (how = 0; how < 2; ++how) {
+        double *after = NULL;
+        for (seen = 0; seen < 2; ++seen) {
+            gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
+            gproj_form *form = gprojt_form_with_equilibrium(mesh);
+            double *w = gprojt_numbers(mesh->edge_count);
+            int32_t closeness = gproj_add_closeness(form, 0.1), e;
+            gproj_solve_begin(form, 12, NULL, NULL);
+            for (k = 0; k < 3; ++k) gproj_solve_advance(form, 0);
+            GPROJT_CHECK(gproj_solve_is_on(form) && gproj_get_forces(form, w, NULL) == GPROJ_OK);
+            for (e = 0; e < mesh->edge_count; ++e) w[e] *= 3;
+            GPROJT_CHECK(gproj_set_forces(form, how ? NULL : w, NULL) == GPROJ_OK);
+            if (seen) gproj_set_schedule(form, closeness, gproj_guide(0.1)); /* as it was: rows are seen again */
+            gproj_solve_advance(form, 0);
+            if (seen) GPROJT_CHECK(gprojt_unmoved(mesh, after));
+            else after = gprojt_keep(mesh);
+            free(w);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+        free(after);
+    }
+}
+
 /* A solve that is refused for its options has found no forces. */
 GPROJT_TEST(refused_solves_start_no_forces) {
     gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
@@ -2325,6 +2352,7 @@ int main(void) {
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(forces_set_between_frames);
     GPROJT_RUN(refused_solves_start_no_forces);
     GPROJT_RUN(half_built_equilibrium);
     GPROJT_RUN(refused_questions_leave_the_form);
