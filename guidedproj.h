@@ -21834,10 +21834,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
         uniform = lost > gproji_force_lost;
         if (uniform && sign) {
             /* For the verdict: would it hang instead of standing, or stand instead of hanging? */
-            s->lost[0] = lost;
+            s->lost[0] = gproji_fmin(lost, DBL_MAX);
             p->opposite = true;
             lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
-            s->lost[1] = lost;
+            s->lost[1] = gproji_fmin(lost, DBL_MAX);
         }
         if (uniform) {
             gproji_force_limits(form, p->lower, p->upper);
@@ -22549,6 +22549,12 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     if (!corners) return;
     part->data = corners;
+    if (mesh->edge_count > GPROJI_INDEX_MAX / 7) {
+        gproji_fail(&form->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                    "smooth solves are for at most %d edges, and the mesh has %d: set skip_guard",
+                    (int32_t)GPROJI_INDEX_MAX / 7, mesh->edge_count);
+        return;
+    }
     corners->edges = 2 * mesh->halfedge_count;
     corners->bends = corners->edges + mesh->edge_count;
     corners->items = corners->bends + mesh->halfedge_count;
@@ -23702,7 +23708,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstJ", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstK", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -23801,6 +23807,8 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
     if (passing) gproji_pass_doubles(stream, form->before, 3 * (size_t)form->mesh->vertex_count);
     if (form->statics) {
         gproji_pass_double(stream, &form->statics->load_scale, 0, DBL_MAX);
+        gproji_pass_double(stream, &form->statics->lost[0], -DBL_MAX, DBL_MAX);
+        gproji_pass_double(stream, &form->statics->lost[1], -DBL_MAX, DBL_MAX);
         gproji_pass_bool(stream, &form->statics->started);
     }
     gproji_pass_groups(stream, form, passing);
@@ -23845,7 +23853,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'J'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'K'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

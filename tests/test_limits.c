@@ -324,6 +324,24 @@ GPROJT_TEST(variables) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Smooth solves number corners, edges and bends together: 7 for each edge. */
+GPROJT_TEST(corners) {
+    int32_t n;
+    for (n = 3; n <= 4; ++n) { /* 33 and 43 edges */
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_triangle_grid(3, n));
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options;
+        memset(&options, 0, sizeof options);
+        options.smooth = true;
+        gproj_add_planarity(form, 1);
+        GPROJT_CHECK((gproj_solve(form, 3, &options).outcome == GPROJ_FAILED) == (n == 4));
+        gprojt_last = *gproj_form_error(form);
+        GPROJT_CHECK(n == 3 || gprojt_is_size("at most 42 edges, and the mesh has 43"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Adds a row with x_first + ... + x_(first + count - 1), or the same terms twice. */
 static int32_t gprojt_add_sum(gproj_system *s, int32_t group, int32_t first, int32_t count, int32_t times) {
     gproj_term term[200];
@@ -472,6 +490,7 @@ int main(void) {
     GPROJT_RUN(supports);
     GPROJT_RUN(matrices);
     GPROJT_RUN(variables);
+    GPROJT_RUN(corners);
     GPROJT_RUN(rows_and_terms);
     GPROJT_RUN(rows_together);
     GPROJT_RUN(terms_in_common);

@@ -416,6 +416,33 @@ GPROJT_TEST(resumed_after_attempts) {
     gprojt_check_same_end(&under[0], &under[1]);
 }
 
+/* What the first forces left of the loads is in a state, for the verdict: a shape that hangs is asked to stand. */
+GPROJT_TEST(verdicts_are_resumed) {
+    gproj_mesh *mesh[2];
+    gproj_form *form[2];
+    gproj_result result[2];
+    uint8_t *state;
+    size_t size;
+    int32_t k, v;
+    for (k = 0; k < 2; ++k) {
+        mesh[k] = gprojt_roof(5, 0);
+        for (v = 0; v < mesh[k]->vertex_count; ++v) mesh[k]->position[3 * v + 2] *= -1;
+        form[k] = gproj_form_create(mesh[k], NULL);
+        gprojt_add_standing(form[k], mesh[k]);
+        gproj_add_compression(form[k], 0, NULL, 1);
+        gproj_add_fixed_boundary(form[k], 1);
+    }
+    gproj_solve_begin(form[0], 60, NULL, NULL);
+    gproj_solve_advance(form[0], 0), gproj_solve_advance(form[0], 0);
+    state = gprojt_save(form[0], &size);
+    GPROJT_CHECK(gproj_state_restore(form[1], state, size, NULL) == GPROJ_OK);
+    for (k = 0; k < 2; ++k) result[k] = gprojt_go_on(form[k]);
+    GPROJT_CHECK(strstr(result[0].message, "as it was the shape hung") != NULL);
+    GPROJT_CHECK(strcmp(result[0].message, result[1].message) == 0);
+    free(state);
+    for (k = 0; k < 2; ++k) gproj_form_destroy(form[k]), gproj_mesh_destroy(mesh[k]);
+}
+
 /* A flat net that is to stand, with its boundary fixed. */
 static gproj_form *gprojt_flat_net(gproj_mesh **mesh) {
     gproj_form *form;
@@ -562,7 +589,7 @@ GPROJT_TEST(every_damage_is_seen) {
     gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
     damaged = (uint8_t *)malloc(size + 8);
     if (!damaged) abort();
-    GPROJT_CHECK(memcmp(state, "gprojstJ", 8) == 0); /* as the header and README's "Changes" say */
+    GPROJT_CHECK(memcmp(state, "gprojstK", 8) == 0); /* as the header and README's "Changes" say */
     for (i = 0; i < size; ++i) {
         memcpy(damaged, state, size);
         damaged[i] ^= (uint8_t)(1 + i % 255);
@@ -1219,6 +1246,7 @@ int main(void) {
     GPROJT_RUN(changes_between_frames_are_saved);
     GPROJT_RUN(questions_between_frames);
     GPROJT_RUN(resumed_after_attempts);
+    GPROJT_RUN(verdicts_are_resumed);
     GPROJT_RUN(resumed_with_forces_that_bend);
     GPROJT_RUN(resumed_while_it_is_mended);
     GPROJT_RUN(undo_and_redo);
