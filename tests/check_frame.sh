@@ -96,6 +96,8 @@ refuses 2 'expected a whole number from 1 to' vault.obj --divide 0
 refuses 2 'must end in .json' vault.obj --report r.txt
 refuses 2 'there is no vertex 49; the mesh has 49' vault.obj --pinned 0-49
 refuses 2 'nothing loads the frame' vault.obj --density 0
+: >empty.obj
+refuses 3 'empty.obj: the text is empty' empty.obj
 refuses 3 'line 1: expected VERTEX,FX,FY,FZ' vault.obj --loads short.csv
 refuses 3 'line 2: there is no vertex 99' vault.obj --loads far.csv
 refuses 3 'vertex 3 bears a load' isolated.obj --loads nowhere.csv

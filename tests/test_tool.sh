@@ -191,6 +191,16 @@ expect 2 "--fix cornrs: there is no such file; expected boundary, corners" grid.
 expect 2 "did you mean corners?" grid.obj -o new.obj --equilibrium --supports cornesr
 expect 2 "did you mean boundary?" grid.obj -o new.obj --planar --glide boundray
 expect 2 "--glide edge: there is no such file; expected boundary, or an OBJ file" grid.obj -o new.obj --planar --glide edge
+expect 2 "--planar=1e60: the weight must be a number from 0 to 1e50" grid.obj -o new.obj --planar=1e60
+expect 2 "--fairness 1e60: expected W" grid.obj -o new.obj --planar --fairness 1e60
+expect 2 "--move 5,1e80,0,0: expected I,X,Y,Z" grid.obj -o new.obj --planar --move 5,1e80,0,0
+: >none.txt
+expect 3 "--fix none.txt: the file names no vertex" grid.obj -o new.obj --planar --fix none.txt
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >closed.obj
+for option in "--fix boundary" "--fix corners" "--glide boundary" --planar-boundary --straight-boundary --orthogonal-boundary \
+    "--boundary-fairness 0.1" "--equilibrium --supports corners"; do
+    expect 2 "${option#--equilibrium }: the mesh is closed" closed.obj -o new.obj --planar $option
+done
 expect 2 "did you mean area?" grid.obj -o new.obj --planar --picture new.svg --colour aera
 for weld in -1 2 x nan; do
     expect 2 "expected a distance in mean edge lengths" grid.obj -o new.obj --planar --weld=$weld

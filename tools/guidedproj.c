@@ -62,6 +62,7 @@ enum {
 };
 
 static const double SAME_PLACE = 1e-6; /* in mean edge lengths */
+static const double MOST_WEIGHT = 1e50, MOST_COORDINATE = 1e70;
 
 typedef struct tool_demand { /* what an option that adds to the form was given; each kind sets some members */
     bool given;
@@ -246,7 +247,7 @@ static bool read_schedule(const char *text, size_t size, tool_demand *demand) {
     if (colon && !gprojx_read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
     star = (const char *)memchr(text, '*', body);
     first = star ? (size_t)(star - text) : body;
-    if (!gprojx_read_number(text, first, &weight) || weight < 0) return false;
+    if (!gprojx_read_number(text, first, &weight) || weight < 0 || weight > MOST_WEIGHT) return false;
     if (star && !gprojx_read_number(star + 1, body - first - 1, &decay)) return false;
     if (decay <= 0 || decay > 1) return false;
     demand->given = true;
@@ -352,8 +353,10 @@ static bool set_offset(tool *t, void *place, const char *name, const char *value
 static bool set_must(tool *t, void *place, const char *name, const char *value) {
     tool_demand *demand = (tool_demand *)place;
     demand->given = true, demand->weight = 1;
-    return !value || (gprojx_read_number(value, strlen(value), &demand->weight) && demand->weight >= 0) ||
-           fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number, 0 or larger", name, value);
+    return !value ||
+           (gprojx_read_number(value, strlen(value), &demand->weight) && demand->weight >= 0 &&
+            demand->weight <= MOST_WEIGHT) ||
+           fail(t, EXIT_USAGE, "--%s=%s: the weight must be a number from 0 to 1e50", name, value);
 }
 
 /* Reads a wish's schedule: weight 1 if it is left out. */
@@ -361,7 +364,7 @@ static bool set_wish(tool *t, void *place, const char *name, const char *value) 
     if (!value) value = "1";
     return read_schedule(value, strlen(value), (tool_demand *)place) ||
            fail_value(t, name, value,
-                      "W[*DECAY][:N] with a weight W of 0 or larger, a DECAY above 0 and at most 1, and a last "
+                      "W[*DECAY][:N] with a weight W from 0 to 1e50, a DECAY above 0 and at most 1, and a last "
                       "iteration N of 1 or larger (as in '0.2*0.9:6')");
 }
 
@@ -578,8 +581,10 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
         if (!comma) comma = end;
         good = k == 0 ? gprojx_read_integer(at, (size_t)(comma - at), 0, INT32_MAX - 1, &move->vertex)
                       : gprojx_read_number(at, (size_t)(comma - at), &move->position[k - 1]);
-        if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word))
-            return fail_value(t, name, value, "I,X,Y,Z: a vertex and the three coordinates of its new place");
+        if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word) ||
+            (k > 0 && fabs(move->position[k - 1]) > MOST_COORDINATE))
+            return fail_value(t, name, value,
+                              "I,X,Y,Z: a vertex and the three coordinates, up to 1e70, of its new place");
     }
     move->weight = word.weight, move->line = t->line;
     for (i = 0; i < t->move_count; ++i)
@@ -1239,7 +1244,9 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
     bool good = name != NULL;
     int32_t i;
     if (!name) return false;
-    if (boundary || corners) {
+    if ((boundary || corners) && t->mesh->loop_count == 0) {
+        good = fail(t, EXIT_USAGE, "%s %s: the mesh is closed and has no boundary", option, name);
+    } else if (boundary || corners) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
             mark[i] = boundary ? gproj_mesh_is_boundary_vertex(t->mesh, i) : gproj_form_is_corner(t->form, i);
     } else if (strspn(name, "0123456789,- ") == word->length) {
@@ -1249,6 +1256,9 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
                           "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
         text = good ? load_text(t, name) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
+        for (i = 0; good && i < t->mesh->vertex_count && !mark[i];) ++i;
+        if (good && i == t->mesh->vertex_count)
+            good = fail(t, EXIT_REFUSED, "%s %s: the file names no vertex", option, name);
         free(text);
     }
     free(name);
@@ -1414,7 +1424,9 @@ static bool read_loads(tool *t) {
 static bool mark_supports(tool *t) {
     const tool_demand boundary = split_word("boundary", 1);
     gproj_error error;
-    if (!mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support)) return false;
+    if ((t->supports.text || t->mesh->loop_count > 0) &&
+        !mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support))
+        return false;
     if (!problem_section(t, "rollers")) return true;
     t->slides = (uint8_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *t->slides);
     return t->slides &&
@@ -1692,8 +1704,8 @@ static const tool_option options[] = {
      "themselves",
      set_output, SETS(output[OUTPUT_PICTURE])},
     {"view", "VIEW",
-     "of the picture: iso, top, bottom, front, back, left, right, or AZIMUTH,ELEVATION in degrees (-58,32)", set_view,
-     SETS(view), .needs = &a_picture},
+     "of the picture: iso, top, bottom, front, back, left, right (or side), or AZIMUTH,ELEVATION in degrees (-58,32)",
+     set_view, SETS(view), .needs = &a_picture},
     {"colour", "WHAT", "of the faces in the picture, by planarity, area, parallelogram or bend", set_colour,
      SETS(colour), .needs = &a_picture},
     {"title", "TEXT", "of the picture (the name of the output)", set_text, SETS(title), .needs = &a_picture},
@@ -2056,8 +2068,13 @@ static bool grow_words(tool *t, size_t room) {
     return (fix && glide && move && group && word) || fail_memory(t);
 }
 
-static gproj_mesh *load_for_problem(void *user, const char *path) {
-    return load((tool *)user, path, strlen(path), NULL);
+static gproj_mesh *load_for_problem(void *user, const char *path, int32_t line) {
+    tool *t = (tool *)user;
+    gproj_mesh *mesh;
+    t->line = line;
+    mesh = load(t, path, strlen(path), NULL);
+    t->line = 0;
+    return mesh;
 }
 
 /* Tells whether the option in a row is for the command line alone. */
@@ -2174,6 +2191,8 @@ static bool add_option(tool *t, int row) {
     const tool_option *option = &options[row];
     const tool_demand *demand = (const tool_demand *)place_of(t, row);
     int32_t group = -1;
+    if (option->add == NULL && t->mesh->loop_count == 0 && strstr(option->name, "boundary"))
+        return fail(t, EXIT_USAGE, "--%s: the mesh is closed and has no boundary", option->name);
     if (option->add)
         group = option->add(t, demand);
     else if (demand->weight > 0)
@@ -2231,7 +2250,8 @@ static bool set_weights(tool *t) {
         const char *of = gprojx_member(&t->problem, item, "of")->text;
         int row = find_option(of);
         t->line = item->line;
-        if (row < 0 || !t->seen[row]) return fail(t, EXIT_REFUSED, "\"weights\": there is no key \"%.60s\"", of);
+        if (row < 0 || !t->seen[row])
+            return fail(t, EXIT_REFUSED, "\"weights\" of \"%.60s\": the problem has no such key", of);
         t->line = 0;
         if (!gprojx_problem_weigh(&t->problem, item, t->group_of[row], &error)) return fail_problem(t, &error);
     }

@@ -34,7 +34,7 @@ typedef struct gprojx_value {
 } gprojx_value;
 
 /* Loads the mesh in a file for a section; NULL: refused, and `user` has said so. */
-typedef gproj_mesh *(*gprojx_load_mesh)(void *user, const char *path);
+typedef gproj_mesh *(*gprojx_load_mesh)(void *user, const char *path, int32_t line);
 
 typedef struct gprojx_problem {
     char *text;          /* owned; keys and texts point into it */
@@ -632,7 +632,7 @@ static gproj_curve *gprojx_make_curve(gprojx_problem *p, const gprojx_value *ite
     gproj_mesh *mesh;
     int32_t which = polyline ? (int32_t)polyline->number : 0, count;
     if (file) {
-        mesh = p->load(p->user, file->text);
+        mesh = p->load(p->user, file->text, file->line);
         if (!mesh) return NULL;
         count = mesh->polyline_count > 0 ? mesh->polyline_count : mesh->loop_count;
         if (which >= count)
