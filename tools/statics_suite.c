@@ -176,6 +176,8 @@ int main(int count, char **path) {
     bool paper = count > 1 && strcmp(path[1], "--paper") == 0, good = true;
     suite_count sum[BOUNDARIES];
     memset(sum, 0, sizeof sum);
+    if (count < 2 + paper || path[1 + paper][0] == '-')
+        return puts("usage: statics_suite [--paper] MESH.{obj,off} ..."), 2;
     printf("%-24s %-8s %-7s %-12s %-5s  %s\n", "mesh", "boundary", "faces", "forces", "load", "outcome");
     for (k = 1 + paper; k < count; ++k) {
         gproj_error error;
