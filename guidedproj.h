@@ -7652,8 +7652,8 @@ static const double gproji_guard_slack = 0.2;  /* how far a step may leave a gua
 /* What a group's rows are to steps; >>loop has a table of who adds them and when they act. Those from GPROJI_GUARD on
    are not in merit, residual and verdict. When bounds begin and cease to act: gproji_switch_bounds. */
 typedef enum gproji_role {
-    GPROJI_CALLERS,   /* ordinary rows of the caller's */
-    GPROJI_ORDINARY,  /* of the library's; callers add rows to groups of their own only */
+    GPROJI_CALLERS,   /* ordinary, and the only role to whose groups callers may add rows */
+    GPROJI_ORDINARY,  /* of a form's: its builders alone add rows, as in all roles below */
     GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
@@ -10376,7 +10376,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    verdict tells the damage.
 
    The roles of groups, by who adds rows, when these act, and whether merit, residual and verdict count them:
-       ordinary    caller and form, before the solve   always, bounds while they are violated               counted
+       callers     caller, before the solve            always, bounds while they are violated               counted
+       ordinary    form, before the solve              the same                                             counted
        lazy        the same (signs of forces)          likewise, but a good step is not found again         counted
        dense       the same (volume, total area)       always; in U of A + U U', not in the matrix A        counted
        guard       form, before the solve              while wishes guide and somewhat longer, as bounds    no
