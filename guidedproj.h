@@ -1601,7 +1601,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
    The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
-/* Sets force densities, edge_count numbers, as the start for the next solve; NULL: the solve finds a start. */
+/* Sets force densities, edge_count numbers: the start for the next solve (NULL: it finds one), or what a solve in
+   frames goes on from (NULL: all are 0). */
 GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities, gproj_error *error);
 /* The variable for an edge's force in the form's system, for rows of your own: the density in the form's units, which
    are chosen at the first solve so that the mean square is 1. -1: the edge has none. */
@@ -1752,10 +1753,10 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
    A state has everything that a solve depends on: the mesh's positions, all variables with the forces among them, the
    weights, schedules, targets, constants and coefficients of all rows, and the progress of a solve in frames
    (gproj_solve_begin). A restored form goes on as the saved one would have: to the bit on the same processor and build,
-   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits.
-   (A state saved by on_iteration is that of an iteration which the solve has not judged yet: its end may come later.) The
+   if no first solve or drag has added groups of the library's own meanwhile, and otherwise but for the last digits. The
    state lacks the mesh's faces and the groups and rows as such: it is restored in the same form, or in one that the
-   same calls have made from the same mesh.
+   same calls have made from the same mesh. When on_iteration saves a state the solve has not judged that iteration yet:
+   from there a solve that stalls may take one iteration more.
 
        size_t size = gproj_state_size(form);
        void *undo = malloc(size);
@@ -3552,14 +3553,10 @@ GPROJI_INTERNAL void gproji_run_tasks(const gproj_parallel *parallel, double flo
     gproji_for(gproji_is_shared(parallel, flops) ? parallel : NULL, count, task, data);
 }
 
-/* An upper bound on the pieces of a child's `below` rows in `groups` groups. */
-GPROJI_INTERNAL int32_t gproji_pieces_most(int32_t groups, int32_t below) {
-    return 2 * groups + below / GPROJI_BLOCK + 2;
-}
-
 /* Cuts a child's rows into pieces for extend-add. Rows in group k, from at[k] - base up to the next group or `below`,
    go to the parent's storage rows from to[k] on. The columns of a piece have one stride in the parent: none lies beyond
-   `pivot_end`, the end of the pivots, or beyond a strip. Returns the number of pieces, at most gproji_pieces_most. */
+   `pivot_end`, the end of the pivots, or beyond a strip. Returns the number of pieces, at most 2 groups + below /
+   GPROJI_BLOCK + 2. */
 GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_t groups, const int32_t *at,
                                            int32_t base, int32_t below, const int32_t *to, int32_t pivot_end,
                                            gproji_piece *piece) {
@@ -6061,7 +6058,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     if (!gproji_analyse(&c->kept, graph, member_start[graph->nodes], options, c->parallel.run != NULL, &c->symbolic))
         return false;
     for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
-        most += gproji_pieces_most(sy->front[f].row_nodes, sy->front[f].below);
+        most += 2 * sy->front[f].row_nodes + sy->front[f].below / GPROJI_BLOCK + 2; /* see gproji_find_pieces */
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
@@ -7652,8 +7649,8 @@ static const double gproji_guard_slack = 0.2;  /* how far a step may leave a gua
 /* What a group's rows are to steps; >>loop has a table of who adds them and when they act. Those from GPROJI_GUARD on
    are not in merit, residual and verdict. When bounds begin and cease to act: gproji_switch_bounds. */
 typedef enum gproji_role {
-    GPROJI_CALLERS,   /* ordinary, and the only role to whose groups callers may add rows */
-    GPROJI_ORDINARY,  /* of a form's: its builders alone add rows, as in all roles below */
+    GPROJI_CALLERS,   /* ordinary; gproj_system_add_row adds rows to these groups only */
+    GPROJI_ORDINARY,  /* of a form: its builders add the rows, as in all roles below */
     GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
@@ -10376,9 +10373,9 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    verdict tells the damage.
 
    The roles of groups, by who adds rows, when these act, and whether merit, residual and verdict count them:
-       callers     caller, before the solve            always, bounds while they are violated               counted
-       ordinary    form, before the solve              the same                                             counted
-       lazy        the same (signs of forces)          likewise, but a good step is not found again         counted
+       callers     caller, of a system                 always, bounds while they are violated               counted
+       ordinary    form, and caller through it         the same                                             counted
+       lazy        form (signs of forces)              likewise, but a good step is not found again         counted
        dense       the same (volume, total area)       always; in U of A + U U', not in the matrix A        counted
        guard       form, before the solve              while wishes guide and somewhat longer, as bounds    no
        safeguard   form, when a step has violated it   as bounds, until they are let go                     no
@@ -12268,23 +12265,23 @@ GPROJI_INTERNAL bool gproji_begin_tangent(gproj_system *s, int32_t sides) {
     return gproji_compile(s, true) == GPROJ_OK && gproji_cholesky_widen(s->cholesky, sides);
 }
 
-/* Linearises at x (NULL: the own one), with what must hold at the weight 1; wishes and the guard do not act, bounds do
-   if they touch their limit, and so do the corners that a smooth solve before has woken. Weights and active
-   rows stay set. Returns the residual. */
+/* Linearises at x, which may still be given up (see gproj_progress.trial), with what must hold at the weight 1; wishes
+   and the guard do not act, bounds do if they touch their limit, and so do the corners that a smooth solve before has
+   woken. Weights and active rows stay set. Returns the residual. */
 GPROJI_INTERNAL double gproji_see_hard(gproj_system *s, double *x) {
     double *own = s->x;
     gproji_loop loop;
     int32_t i, r;
-    if (x) s->x = x;
+    s->x = x;
     memset(&loop, 0, sizeof loop);
     loop.system = s;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->kind != GPROJ_WISH && g->role != GPROJI_GUARD && gproji_weight_in(&loop, g, 1) > 0;
     }
-    s->solving = true;
+    s->solving = s->progress.trial = true;
     gproji_linearise(&loop);
-    s->solving = false;
+    s->solving = s->progress.trial = false;
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_BOUND && r < g->row_count; ++r)
@@ -12352,8 +12349,8 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
     return true;
 }
 
-/* Ends reading a state: the system's numbers are as saved. */
-GPROJI_INTERNAL void gproji_end_restoring(gproj_system *s) { s->changed = false; }
+/* Sets whether a solve in frames is to see all rows anew. */
+GPROJI_INTERNAL void gproji_set_changed(gproj_system *s, bool changed) { s->changed = changed; }
 
 /* Hashes how many variables there are, and their blocks. */
 GPROJI_INTERNAL uint64_t gproji_hash_variables(uint64_t hash, const gproj_system *s) {
@@ -21943,12 +21940,11 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     if (code) return code;
     s = form->statics;
     x = gproj_system_values(form->system);
-    /* A solve in frames is to see the rows anew, as after a change of weights. */
-    gproj_system_set_schedule(form->system, s->group, gproji_group_at(form->system, s->group)->schedule);
     for (e = 0; !densities && e < form->mesh->edge_count; ++e)
         if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) {
-        s->started = false;
+        s->started = form->solve.on;
+        gproji_set_changed(form->system, true);
         return GPROJ_OK;
     }
     /* 1. The root of the mean square, found without overflow. */
@@ -21977,6 +21973,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     for (e = 0; e < form->mesh->edge_count; ++e)
         if (s->force[e] >= 0) x[s->force[e]] = densities[e] / mean;
     s->started = true;
+    gproji_set_changed(form->system, true);
     return GPROJ_OK;
 }
 
@@ -22552,7 +22549,7 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     part->data = corners;
     if (mesh->edge_count > GPROJI_INDEX_MAX / 7) {
         gproji_fail(&form->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                    "smooth solves are for at most %d edges, and the mesh has %d: set skip_guard",
+                    "corners can be kept of at most %d edges, and the mesh has %d: set skip_guard in a new form",
                     (int32_t)GPROJI_INDEX_MAX / 7, mesh->edge_count);
         return;
     }
@@ -23930,7 +23927,7 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
     in.mode = GPROJI_READ;
     gproji_pass_state(&in, form);
     if (in.exhausted) return gproji_fail_memory(&form->error), gproji_pass_on(error, &form->error);
-    gproji_end_restoring(form->system);
+    gproji_set_changed(form->system, false); /* the numbers are as saved */
     return GPROJ_OK;
 }
 
@@ -24002,8 +23999,8 @@ struct gproj_drag {
     int32_t variables; /* of the system */
     double *first;     /* 3 * vertex_count: the vertices at the beginning */
     double *last;      /* variables: x before a move */
-    double *from;      /* variables: x where it was linearised last, */
-    double *base;      /* variables: and after the step that took the residual off there */
+    double *from;      /* variables: x at the last linearisation */
+    double *base;      /* variables: x after its step, which takes the residual off */
     double *held;      /* columns: S'v at `base` */
     double *wanted;    /* columns: S'v wanted by the handles */
     double *motion;    /* columns x variables: Q */
@@ -24080,7 +24077,7 @@ GPROJI_INTERNAL void gproji_orthonormalise(gproj_drag *drag) {
 GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore, gproj_error *error) {
     gproj_system *system = drag->form->system;
     const gproji_handle_list *list = &drag->handle;
-    const double *x = gproj_system_values(system);
+    double *x = gproj_system_values(system);
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, rank;
     int32_t light_from = 3 * drag->form->mesh->vertex_count, damping, i, j;
     double residual, *column;
@@ -24089,7 +24086,7 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     if (!gproji_begin_tangent(system, GPROJI_DRAG_SIDES)) /* a solve of the system meanwhile may have another matrix */
         return gproji_form_ready(drag->form) ? gproji_fail_memory(error)
                                              : gproji_pass_on(error, gproj_form_error(drag->form));
-    residual = gproji_see_hard(system, NULL);
+    residual = gproji_see_hard(system, x);
     if (!gproji_form_ready(drag->form)) return gproji_pass_on(error, gproj_form_error(drag->form));
     /* 1. The responses Q by (1): column 3 k + c begins as the force of handle k along axis c. */
     memcpy(drag->base, x, n * sizeof *drag->base);
@@ -24113,7 +24110,7 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
         if (gproji_see_hard(system, drag->base) < enough && most <= 1) break;
         memcpy(drag->base, x, n * sizeof *drag->base);
         if (damping == GPROJI_DRAG_DAMPINGS) break;
-        gproji_see_hard(system, NULL);
+        gproji_see_hard(system, x);
         how.epsilon *= gproji_drag_damping;
         if (!gproji_project(system, &how, 0, drag->motion, drag->base)) break;
     }
@@ -24133,6 +24130,10 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     }
     gproji_gather_handles(drag, drag->base, drag->held);
     memcpy(drag->from, x, n * sizeof *drag->from);
+    /* 4. What refreshes keep is that of the last linearisation, so that it can be repeated. */
+    gproji_hold(system, true);
+    gproji_refresh_groups(system);
+    gproji_hold(system, false);
     drag->info.linearisations++;
     return GPROJ_OK;
 }
@@ -24172,9 +24173,27 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     return drag->error.code == GPROJ_OK;
 }
 
+/* Undoes a move that was refused, so that it leaves no trace: linearises where it was done before. If that fails
+   nothing moves any more. Returns why the move was refused. */
+GPROJI_INTERNAL gproj_code gproji_undo_move(gproj_drag *drag, gproj_drag_info before) {
+    double *x = gproj_system_values(drag->form->system);
+    size_t size = (size_t)drag->variables * sizeof *x;
+    memcpy(x, drag->from, size);
+    if (gproji_linearise_drag(drag, before.linearisations > 1, NULL) != GPROJ_OK) {
+        before.freedom = 0;
+        memcpy(drag->base, drag->last, size);
+        gproji_gather_handles(drag, drag->base, drag->held);
+    }
+    memcpy(x, drag->last, size);
+    if (gproji_form_ready(drag->form)) gproji_see_hard(drag->form->system, x);
+    drag->info = before;
+    return drag->error.code;
+}
+
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
     gproj_drag_info info;
-    double bound;
+    gproj_system *s;
+    double *x;
     int32_t k, j, c, handles;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
@@ -24182,8 +24201,9 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
         gproji_check_positions(drag->info.handles, positions, GPROJ_PLACE_NONE, "handle", &drag->error) != GPROJ_OK)
         return drag->error.code;
     info = drag->info;
-    bound = drag->options.residual_bound;
-    memcpy(drag->last, gproj_system_values(drag->form->system), (size_t)drag->variables * sizeof *drag->last);
+    s = drag->form->system;
+    x = gproj_system_values(s);
+    memcpy(drag->last, x, (size_t)drag->variables * sizeof *x);
     /* 1. wanted = S'v at the beginning + (S'S) d. */
     handles = drag->info.handles;
     gproji_gather_handles(drag, drag->first, drag->wanted);
@@ -24194,16 +24214,8 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     gproji_follow_handles(drag);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
-    if (bound > 0 && !(gproji_see_hard(drag->form->system, NULL) <= bound)) {
-        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) {
-            /* Undo the move; if the responses before it cannot be found again, nothing moves any more. */
-            double *x = gproj_system_values(drag->form->system);
-            memcpy(x, drag->from, (size_t)drag->variables * sizeof *x);
-            if (gproji_linearise_drag(drag, info.linearisations > 1, NULL) != GPROJ_OK) info.freedom = 0;
-            memcpy(x, drag->last, (size_t)drag->variables * sizeof *x);
-            drag->info = info;
-            return drag->error.code;
-        }
+    if (drag->options.residual_bound > 0 && !(gproji_see_hard(s, x) <= drag->options.residual_bound)) {
+        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
         gproji_follow_handles(drag);
     }
     gproji_store_positions(drag->form, drag->form->before);
@@ -24213,7 +24225,8 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
     if (!drag) return 0;
     gproji_error_clear(&drag->error);
-    return gproji_drag_is_usable(drag) ? gproji_see_hard(drag->form->system, NULL) : HUGE_VAL;
+    if (!gproji_drag_is_usable(drag)) return HUGE_VAL;
+    return gproji_see_hard(drag->form->system, gproj_system_values(drag->form->system));
 }
 
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
@@ -24414,9 +24427,10 @@ GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
     if (drag->released && gproji_form_ready(form)) gproji_schedule_release(drag, false);
     gproji_reset_mesh(form);
     memcpy(gproj_system_values(form->system), drag->before.x, (size_t)drag->variables * sizeof *drag->before.x);
-    /* Refused if rows were added, or after an error. */
-    gproji_read_state(form, drag->before.state, drag->before.state_size, NULL);
-    form->solve.loop.options = drag->before.options;
+    if (gproji_read_state(form, drag->before.state, drag->before.state_size, NULL) == GPROJ_OK)
+        form->solve.loop.options = drag->before.options;
+    else /* rows were added, or the form has an error */
+        form->solve.on = form->solve.finished = false;
     gproji_destroy_drag(drag);
 }
 

@@ -1980,9 +1980,12 @@ GPROJT_TEST(half_built_equilibrium) { GPROJT_CHECK(gprojt_fail_every_allocation(
 /* Forces that are set, or taken away, between frames are those of the next step. */
 GPROJT_TEST(forces_set_between_frames) {
     int how, seen, k;
+    int32_t v = 12;
+    gproj_handles handles = {1, NULL, &v, NULL, NULL};
     for (how = 0; how < 2; ++how) {
         double *after = NULL;
         for (seen = 0; seen < 2; ++seen) {
+            gproj_drag *drag;
             gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
             gproj_form *form = gprojt_form_with_equilibrium(mesh);
             double *w = gprojt_numbers(mesh->edge_count);
@@ -1996,12 +1999,39 @@ GPROJT_TEST(forces_set_between_frames) {
             gproj_solve_advance(form, 0);
             if (seen) GPROJT_CHECK(gprojt_unmoved(mesh, after));
             else after = gprojt_keep(mesh);
+            while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+            drag = gproj_drag_begin(form, &handles, NULL, NULL); /* the forces have values */
+            GPROJT_CHECK(drag != NULL);
+            gproj_drag_cancel(drag);
             free(w);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }
         free(after);
     }
+}
+
+/* Forces that are refused between frames change nothing of what follows, where rows that are seen anew would. */
+GPROJT_TEST(forces_refused_between_frames) {
+    double *after = NULL;
+    int refused, k;
+    for (refused = 0; refused < 2; ++refused) {
+        gproj_mesh *mesh = gprojt_noisy(QUADS, 4, 0.1, 1);
+        gproj_form *form = gprojt_form_with_equilibrium(mesh);
+        double *w = gprojt_numbers(mesh->edge_count);
+        gproj_add_planarity(form, 1);
+        gproj_solve_begin(form, 40, NULL, NULL);
+        for (k = 0; k < 5; ++k) gproj_solve_advance(form, 0);
+        for (k = 0; k < mesh->edge_count; ++k) w[k] = NAN;
+        if (refused) GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_ERROR_NUMBER);
+        while (gproj_solve_is_on(form)) gproj_solve_advance(form, 0);
+        if (refused) GPROJT_CHECK(gprojt_unmoved(mesh, after));
+        else after = gprojt_keep(mesh);
+        free(w);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    free(after);
 }
 
 /* A solve that is refused for its options has found no forces. */
@@ -2353,6 +2383,7 @@ int main(void) {
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
     GPROJT_RUN(forces_set_between_frames);
+    GPROJT_RUN(forces_refused_between_frames);
     GPROJT_RUN(refused_solves_start_no_forces);
     GPROJT_RUN(half_built_equilibrium);
     GPROJT_RUN(refused_questions_leave_the_form);

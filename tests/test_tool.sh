@@ -195,12 +195,15 @@ expect 2 "--planar=1e60: the weight must be a number from 0 to 1e50" grid.obj -o
 expect 2 "--fairness 1e60: expected W" grid.obj -o new.obj --planar --fairness 1e60
 expect 2 "--move 5,1e80,0,0: expected I,X,Y,Z" grid.obj -o new.obj --planar --move 5,1e80,0,0
 : >none.txt
-expect 3 "--fix none.txt: the file names no vertex" grid.obj -o new.obj --planar --fix none.txt
+expect 2 "--fix none.txt: this names no vertex" grid.obj -o new.obj --planar --fix none.txt
+expect 2 "--fix ,: this names no vertex" grid.obj -o new.obj --planar --fix ,
+awk 'BEGIN { for (i = 0; i < 24; ++i) print "v", cos(i * 0.2618), sin(i * 0.2618), 0
+    printf "f"; for (i = 1; i <= 24; ++i) printf " %d", i; print "" }' >disk.obj
+expect 2 "--fix corners: the boundary has no corners" disk.obj -o new.obj --planar --fix corners
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >closed.obj
 for option in "--fix boundary" "--fix corners" "--glide boundary" --planar-boundary --straight-boundary --orthogonal-boundary \
-    "--boundary-fairness 0.1" "--equilibrium --supports corners"; do
-    said=${option#--equilibrium }
-    expect 2 "${said% 0.1}: the mesh is closed" closed.obj -o new.obj --planar $option
+    "--boundary-fairness 0.1"; do
+    expect 2 "mesh is closed and has no boundary" closed.obj -o new.obj --planar $option
 done
 expect 2 "did you mean area?" grid.obj -o new.obj --planar --picture new.svg --colour aera
 for weld in -1 2 x nan; do

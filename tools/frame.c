@@ -448,7 +448,7 @@ static bool make_frame(tool *t) {
     int32_t e, i;
     bool any = false;
     t->mesh = gproj_mesh_load(t->input, NULL, &error);
-    if (!t->mesh && strstr(error.message, t->input)) return fail_error(t, "", "", &error);
+    if (!t->mesh && error.code == GPROJ_ERROR_FILE) return fail_error(t, "", "", &error);
     if (!t->mesh) return fail_error(t, t->input, ": ", &error);
     if (t->mean_edge > 0) t->scale = t->mean_edge / gproj_mesh_mean_edge_length(t->mesh);
     if (t->mesh->edge_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no edges", t->input);

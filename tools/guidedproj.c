@@ -247,7 +247,7 @@ static bool read_schedule(const char *text, size_t size, tool_demand *demand) {
     if (colon && !gprojx_read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
     star = (const char *)memchr(text, '*', body);
     first = star ? (size_t)(star - text) : body;
-    if (!gprojx_read_number(text, first, &weight) || weight < 0 || weight > MOST_WEIGHT) return false;
+    if (!gprojx_read_number(text, first, &weight) || weight < 0) return false;
     if (star && !gprojx_read_number(star + 1, body - first - 1, &decay)) return false;
     if (decay <= 0 || decay > 1) return false;
     demand->given = true;
@@ -362,7 +362,8 @@ static bool set_must(tool *t, void *place, const char *name, const char *value) 
 /* Reads a wish's schedule: weight 1 if it is left out. */
 static bool set_wish(tool *t, void *place, const char *name, const char *value) {
     if (!value) value = "1";
-    return read_schedule(value, strlen(value), (tool_demand *)place) ||
+    return (read_schedule(value, strlen(value), (tool_demand *)place) &&
+            ((tool_demand *)place)->weight <= MOST_WEIGHT) ||
            fail_value(t, name, value,
                       "W[*DECAY][:N] with a weight W from 0 to 1e50, a DECAY above 0 and at most 1, and a last "
                       "iteration N of 1 or larger (as in '0.2*0.9:6')");
@@ -1244,9 +1245,7 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
     bool good = name != NULL;
     int32_t i;
     if (!name) return false;
-    if ((boundary || corners) && t->mesh->loop_count == 0) {
-        good = fail(t, EXIT_USAGE, "%s %s: the mesh is closed and has no boundary", option, name);
-    } else if (boundary || corners) {
+    if (boundary || corners) {
         for (i = 0; i < t->mesh->vertex_count; ++i)
             mark[i] = boundary ? gproj_mesh_is_boundary_vertex(t->mesh, i) : gproj_form_is_corner(t->form, i);
     } else if (strspn(name, "0123456789,- ") == word->length) {
@@ -1256,9 +1255,6 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
                           "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
         text = good ? load_text(t, name) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
-        for (i = 0; good && i < t->mesh->vertex_count && !mark[i];) ++i;
-        if (good && i == t->mesh->vertex_count)
-            good = fail(t, EXIT_REFUSED, "%s %s: the file names no vertex", option, name);
         free(text);
     }
     free(name);
@@ -1275,6 +1271,16 @@ static int32_t add_fixed(tool *t, const tool_demand *none) {
         memset(mark, 0, vertices * sizeof *mark);
         t->line = t->fix[k].line;
         if (!mark_vertices(t, "--fix", &t->fix[k], mark)) break;
+        for (i = 0; i < t->mesh->vertex_count && !mark[i];) ++i;
+        if (i == t->mesh->vertex_count && t->fix[k].weight > 0) {
+            bool corners = same_word(t->fix[k].text, t->fix[k].length, "corners");
+            bool boundary = corners || same_word(t->fix[k].text, t->fix[k].length, "boundary");
+            fail(t, EXIT_USAGE, "--fix %.*s: %s", (int)t->fix[k].length, t->fix[k].text,
+                 boundary && t->mesh->loop_count == 0 ? "the mesh is closed and has no boundary"
+                 : corners                            ? "the boundary has no corners"
+                                                      : "this names no vertex");
+            break;
+        }
         for (count = i = 0; i < t->mesh->vertex_count; ++i)
             if (mark[i] && !is_moved(t, i)) list[count++] = i;
         if (count > 0 && t->fix[k].weight > 0) gproj_add_fixed(t->form, count, list, t->fix[k].weight);
@@ -1424,9 +1430,7 @@ static bool read_loads(tool *t) {
 static bool mark_supports(tool *t) {
     const tool_demand boundary = split_word("boundary", 1);
     gproj_error error;
-    if ((t->supports.text || t->mesh->loop_count > 0) &&
-        !mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support))
-        return false;
+    if (!mark_vertices(t, "--supports", t->supports.text ? &t->supports : &boundary, t->is_support)) return false;
     if (!problem_section(t, "rollers")) return true;
     t->slides = (uint8_t *)take(t, (size_t)t->mesh->vertex_count, sizeof *t->slides);
     return t->slides &&
@@ -2191,7 +2195,7 @@ static bool add_option(tool *t, int row) {
     const tool_option *option = &options[row];
     const tool_demand *demand = (const tool_demand *)place_of(t, row);
     int32_t group = -1;
-    if (option->add == NULL && t->mesh->loop_count == 0 && strstr(option->name, "boundary"))
+    if (!option->add && demand->weight > 0 && t->mesh->loop_count == 0 && strstr(option->name, "boundary"))
         return fail(t, EXIT_USAGE, "--%s: the mesh is closed and has no boundary", option->name);
     if (option->add)
         group = option->add(t, demand);
