@@ -274,7 +274,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     double *child = (double *)malloc(((size_t)gproji_update_entries(rows) + 1) * sizeof(double));
     int32_t *group = (int32_t *)malloc(sizeof(int32_t) * (size_t)(2 * below + 2)), *to = group + below + 1;
     int32_t *row_to = (int32_t *)malloc(sizeof(int32_t) * (size_t)(below + 1));
-    gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)gproji_pieces_most(below, below));
+    gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)(2 * below + below / GPROJI_BLOCK + 2));
     gproji_panel panel = gproji_make_panel(kernels, w, u, values, NULL, update);
     gproji_addition add;
     for (i = 0; i < below; i = next) {
@@ -289,7 +289,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     for (i = 0; i < (int32_t)gproji_update_entries(rows); ++i) child[i] = 1.0 + gprojt_uniform(seed);
     add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
     add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
-    GPROJT_CHECK(add.pieces <= gproji_pieces_most(groups, below));
+    GPROJT_CHECK(add.pieces <= 2 * groups + below / GPROJI_BLOCK + 2);
     for (i = 0; i < storage(w, w); i += GPROJI_BLOCK) gproji_add_columns(&add, i, i + GPROJI_BLOCK);
     for (i = 0; i < u; i += GPROJI_STRIP)
         gproji_add_columns(&add, storage(w, w) + i, gproji_min(storage(w, w) + i + GPROJI_STRIP, storage(w, n)));
@@ -325,7 +325,7 @@ GPROJT_TEST(dense_runs_of_pieces) {
     const gproji_kernels *kernels;
     int32_t at = 0, to = 0, kind, k;
     FOR_ALL_KERNELS {
-        size_t most = (size_t)gproji_pieces_most(1, BELOW);
+        size_t most = (size_t)2 * 1 + BELOW / GPROJI_BLOCK + 2;
         gproji_piece *piece = (gproji_piece *)malloc(most * sizeof *piece);
         int32_t count = gproji_find_pieces(kernels, 1, &at, 0, BELOW, &to, BELOW, piece), rows = 0;
         for (k = 0; k < count; ++k) {
