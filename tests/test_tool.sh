@@ -197,8 +197,8 @@ expect 2 "--move 5,1e80,0,0: expected I,X,Y,Z" grid.obj -o new.obj --planar --mo
 : >none.txt
 expect 2 "--fix none.txt: this names no vertex" grid.obj -o new.obj --planar --fix none.txt
 expect 2 "--fix ,: this names no vertex" grid.obj -o new.obj --planar --fix ,
-awk 'BEGIN { for (i = 0; i < 24; ++i) print "v", cos(i * 0.2618), sin(i * 0.2618), 0
-    printf "f"; for (i = 1; i <= 24; ++i) printf " %d", i; print "" }' >disk.obj
+awk 'BEGIN { print "v 0 0 0.1"; for (i = 0; i < 24; ++i) print "v", cos(i * 0.2618), sin(i * 0.2618), 0
+    for (i = 0; i < 24; ++i) print "f 1", i + 2, (i + 1) % 24 + 2 }' >disk.obj
 expect 2 "--fix corners: the boundary has no corners" disk.obj -o new.obj --planar --fix corners
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n' >closed.obj
 for option in "--fix boundary" "--fix corners" "--glide boundary" --planar-boundary --straight-boundary --orthogonal-boundary \

@@ -1210,7 +1210,8 @@ class System(_Sticky):
         self._check(_lib().gproj_system_set_schedule(self._c, group, schedule))
 
     def add_row(self, group, terms, constant=0.0, element=-1):
-        """Adds a row: terms (i, j, a) for a x_i x_j, or a x_i where j is -1. Returns its number in the group."""
+        """Adds a row to a group of add_group (those of a form take none): terms (i, j, a) for a x_i x_j, or a x_i where
+        j is -1. Returns its number in the group."""
         count, terms = _terms(terms)
         row = self._check(_lib().gproj_system_add_row(self._c, group, count, terms, constant, element))
         self._root.terms[group, row] = count
