@@ -11201,7 +11201,6 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     if (loop->trust.failed) factor = 1;
     if (is_short) factor = 2;
     loop->trust.wary = loop->trust.failed || is_short ? GPROJI_WARY : gproji_max(0, loop->trust.wary - 1);
-    loop->trust.failed = false;
     stiffness = gproji_fmin(s->stiffness * factor, gproji_stiffness_most);
     if (stiffness >= gproji_stiffness_least ||
         (loop->trust.restless && loop->trust.left > gproji_stiffness_left && stiffness >= gproji_stiffness_finest))
@@ -11227,6 +11226,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     }
     gproji_pass_over(s, 0, gproji_save_task);
     loop->iteration.factorisations = 0;
+    loop->trust.failed = false;
     for (trial = 0; trial < GPROJI_TRIALS && s->error.code == GPROJ_OK; ++trial) {
         gproji_standing before = loop->standing;
         bool stepped;
@@ -23788,6 +23788,13 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
     gproji_passing passing = GPROJI_PASS_NONE;
     gproji_solve solve = form->solve;
     bool read = stream->mode == GPROJI_READ;
+    if (read) { /* nothing of the solve before, but whom it tells */
+        memset(&solve.loop, 0, sizeof solve.loop);
+        if (form->solve.on) solve.loop.options.on_iteration = form->solve.loop.options.on_iteration;
+        if (form->solve.on) solve.loop.options.user = form->solve.loop.options.user;
+        solve.loop.result.spoiled.element = -1;
+        solve.loop.result.attempts = 1;
+    }
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
@@ -23798,7 +23805,6 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
     else if (read)
         form->solve.on = form->solve.finished = false;
     if (read && solve.on) {
-        if (!form->solve.on) solve.loop.options.on_iteration = NULL, solve.loop.options.user = NULL;
         solve.structure = gproji_structure_of(form->system);
         form->solve = solve;
     }

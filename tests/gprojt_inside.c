@@ -23,6 +23,11 @@ bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group) {
     return form->system->group[group].role >= GPROJI_GUARD;
 }
 
+void gprojt_inside_spoil_solve(gproj_form *form) {
+    memset(&form->solve, 1, sizeof form->solve); /* flags are on, but for: */
+    form->solve.on = false;
+}
+
 bool gprojt_inside_refuses(const gproj_form *form, const double *before, const double *after) {
     return gproji_refuse_corners((void *)(uintptr_t)form, before, after);
 }

@@ -362,8 +362,10 @@ GPROJT_TEST(changes_between_frames_are_saved) {
         size_t size;
         for (k = 0; k < 2; ++k) {
             gprojt_set_out(&under[k], way);
-            if (way / 2 % 2) gproj_set_targets(under[k].form, under[k].targets, to);
-            else gproj_set_schedule(under[k].form, under[k].fairness, gproj_keep(2));
+            if (way / 2 % 2)
+                gproj_set_targets(under[k].form, under[k].targets, to);
+            else
+                gproj_set_schedule(under[k].form, under[k].fairness, gproj_keep(2));
         }
         state = gprojt_save(under[1].form, &size);
         GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
@@ -380,8 +382,26 @@ GPROJT_TEST(questions_between_frames) {
         gproj_system *s;
         gprojt_set_out(&under[0], way / 2), gprojt_set_out(&under[1], way / 2);
         s = gproj_form_system(under[1].form);
-        if (way % 2) GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-6);
-        else GPROJT_CHECK(gproj_system_solve(s, -1, NULL).outcome == GPROJ_FAILED);
+        if (way % 2)
+            GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-6);
+        else
+            GPROJT_CHECK(gproj_system_solve(s, -1, NULL).outcome == GPROJ_FAILED);
+        gprojt_check_same_end(&under[0], &under[1]);
+    }
+}
+
+/* Nothing of the solve before is left in one that is restored. */
+GPROJT_TEST(restored_over_another_solve) {
+    int way, k;
+    for (way = 0; way < GPROJT_WAYS; ++way) {
+        gprojt_under_way under[2];
+        uint8_t *state;
+        size_t size;
+        for (k = 0; k < 2; ++k) gprojt_set_out(&under[k], way);
+        state = gprojt_save(under[1].form, &size);
+        gprojt_inside_spoil_solve(under[1].form);
+        GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+        free(state);
         gprojt_check_same_end(&under[0], &under[1]);
     }
 }
@@ -778,9 +798,13 @@ static bool gprojt_try_forged(gproj_form *form, const uint8_t *forged, const uin
 /* Each byte of a small state in turn is 0, 255, one more and one less, with the right checksum; with sanitizers, which
    are slow, every other byte is 0 and one more, and the others 255 and one less. */
 #ifdef GPROJT_SANITIZED
-enum { GPROJT_FORGE_STEP = 2 };
+enum {
+    GPROJT_FORGE_STEP = 2
+};
 #else
-enum { GPROJT_FORGE_STEP = 1 };
+enum {
+    GPROJT_FORGE_STEP = 1
+};
 #endif
 static void gprojt_forge_each_byte(int design, const gproj_solve_options *options, int32_t steps) {
     gproj_mesh *mesh = gprojt_roof(2, 0.05);
@@ -1245,6 +1269,7 @@ int main(void) {
     GPROJT_RUN(resumed_to_the_same_bytes);
     GPROJT_RUN(changes_between_frames_are_saved);
     GPROJT_RUN(questions_between_frames);
+    GPROJT_RUN(restored_over_another_solve);
     GPROJT_RUN(resumed_after_attempts);
     GPROJT_RUN(verdicts_are_resumed);
     GPROJT_RUN(resumed_with_forces_that_bend);
