@@ -11174,12 +11174,6 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
     if (back && !gproji_place_woken(loop, false) && s->compiled) gproji_linearise(loop); /* not without memory */
 }
 
-/* Lets the first step of a solve have this stiffness; `anchored`: steps lead to the least way from here. */
-GPROJI_INTERNAL void gproji_begin_stiff(gproj_system *s, double stiffness, bool anchored) {
-    s->stiffness = stiffness;
-    s->anchored = anchored;
-}
-
 /* From now on metric groups measure steps alone. */
 GPROJI_INTERNAL void gproji_weigh_anchor(gproj_system *s) {
     int32_t i, r;
@@ -11922,10 +11916,11 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
 
 /* -- runs: a solve, or a part of it -- */
 
-/* Makes a loop for a solve of this system. If that is refused the result says why: meaningless options are an error of
-   the call, not of the system. */
-GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32_t iterations,
-                                       const gproj_solve_options *options) {
+/* Makes a loop for a solve of this system. The stiffness is that of the first step, if there are metric groups;
+   `anchored`: steps lead to the least way from here. If the solve is refused the result says why: meaningless options
+   are an error of the call, not of the system. */
+GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, double stiffness, bool anchored,
+                                       int32_t iterations, const gproj_solve_options *options) {
     const gproj_solve_options *o = &loop->options;
     gproj_error refused;
     int32_t i;
@@ -11954,7 +11949,7 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, int32
                         "and a time budget needs a clock in the host",
                         iterations, o->tolerance, o->epsilon, o->time_budget);
         else if (gproji_values_are_valid(s)) {
-            s->stiffness = loop->stiff, s->anchored = false;
+            s->stiffness = loop->stiff ? stiffness : 0, s->anchored = anchored;
             return true;
         }
     }
@@ -12041,7 +12036,7 @@ GPROJI_INTERNAL bool gproji_run(gproji_loop *loop, double seconds) {
 
 GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, const gproj_solve_options *options) {
     gproji_loop loop;
-    if (!gproji_begin_loop(&loop, s, iterations, options)) return loop.result;
+    if (!gproji_begin_loop(&loop, s, 1, false, iterations, options)) return loop.result;
     gproji_run(&loop, -1);
     s->changed = true; /* for the solve of a form that goes on after this one, which may have taken its multipliers */
     return loop.result;
@@ -12197,6 +12192,20 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
     }
     gproji_pass_rows(stream, s, g, passing || !g->refresh);
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) gproji_pass_standing(stream, s, group, r, passing);
+}
+
+/* Leaves a group as if it had never had a weight, so that steps are found without it (gproji_wake_groups), and with
+   its first `rows` rows: all of them, but for safeguards, whose rows come and go. */
+GPROJI_INTERNAL void gproji_renew_group(gproj_system *s, int32_t group, int32_t rows) {
+    gproji_group *g = &s->group[group];
+    s->schur.stale = s->schur.stale || !g->idle;
+    g->schedule = gproj_keep(0);
+    g->weight = 0;
+    g->idle = true;
+    if (rows == g->row_count) return;
+    gproji_system_forget(s);
+    g->sources = g->term_count = g->row[rows].term;
+    g->row_count = rows;
 }
 
 /* Passes a solve under way. Returns which part of the groups belongs to it. */
@@ -22524,7 +22533,7 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
     gproji_pass_doubles(stream, corners->length, (size_t)mesh->edge_count);
     gproji_pass_doubles(stream, corners->axis, 3 * (size_t)mesh->face_count);
     gproji_pass_integer(stream, &corners->rounds, 0, INT32_MAX / 2);
-    count = gproji_pass_integer(stream, &count, 0, count);
+    count = gproji_pass_integer(stream, &count, 0, corners->items);
     for (r = 0; r < count && !stream->wrong; ++r) {
         int32_t item = gproji_comes_in(stream) ? 0 : corners->item[r];
         item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
@@ -23442,9 +23451,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_set_corners(form, (smooth || (nearest && iterations > GPROJI_SAFE_MOST)) && !options->skip_guard);
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
-    solve->on = gproji_begin_loop(&solve->loop, form->system, iterations, options);
+    solve->on = gproji_begin_loop(&solve->loop, form->system, beginning->stiffness, anchored, iterations, options);
     if (!solve->on && form->statics) form->statics->started = started; /* a refused solve has found no forces */
-    if (solve->loop.stiff) gproji_begin_stiff(form->system, beginning->stiffness, anchored);
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
@@ -23712,7 +23720,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
 
    Groups that the library adds itself, when they are first needed, may be missing in the form, which then gets them, or
-   in the state: then they lose their weight. */
+   in the state: then they are as if they had never had a weight. */
 
 enum {
     GPROJI_STATE_HEAD = 24, /* bytes before the state, and after it: */
@@ -23722,14 +23730,15 @@ enum {
 /* -- the state -- */
 
 /* Passes the groups and the data of their rules. A byte before each tells which group of the library it is, or that it
-   is the caller's; groups of the library that a state does not have lose their weight. */
+   is the caller's; groups of the library that a state does not have are as if they had never had a weight. */
 GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form, gproji_passing passing) {
-    int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own;
+    int32_t have = gproj_system_group_count(form->system), count = have, k, theirs = -1, own, group;
     bool seen[GPROJI_OWN_COUNT] = {false};
     gproji_part *part;
     count = gproji_pass_integer(stream, &count, 0, INT32_MAX);
     for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_own_of(form, k), group = -1;
+        int32_t kind = gproji_comes_in(stream) ? 0 : (int32_t)gproji_own_of(form, k);
+        group = -1;
         kind = (int32_t)gproji_pass_bytes(stream, (uint64_t)kind, 1);
         if (kind == GPROJI_OWN_NONE) {
             for (++theirs; theirs < have && gproji_own_of(form, theirs); ++theirs) continue;
@@ -23747,14 +23756,14 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
         if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
-        if (!seen[own] && gproji_own_group(form, (gproji_own)own) >= 0)
-            gproj_system_set_schedule(form->system, gproji_own_group(form, (gproji_own)own), gproj_keep(0));
+        if (!seen[own] && (group = gproji_own_group(form, (gproji_own)own)) >= 0)
+            gproji_renew_group(form->system, group, gproji_group_at(form->system, group)->row_count);
 }
 
 /* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form
-   gets those that come in. */
+   gets those that come in, and when they are read no others: how steps are found depends on them. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
-    int32_t list[GPROJI_OWN_COUNT], count = 0, k;
+    int32_t list[GPROJI_OWN_COUNT], count = 0, rows, k, r;
     bool in = gproji_comes_in(stream);
     gproji_corners *corners;
     gproji_part *part;
@@ -23768,13 +23777,19 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
             gproji_add_own_group(form, (gproji_own)own);
     }
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
     corners = part ? gproji_corners_of(part) : NULL;
+    count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
     count = gproji_pass_integer(stream, &count, 0, corners ? corners->items : 0);
-    for (k = 0; k < count && !stream->wrong; ++k) {
-        int32_t item = in ? 0 : corners->item[k];
-        item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
-        if (!in || stream->wrong) continue;
+    for (k = 0; k <= count && !stream->wrong; ++k) {
+        int32_t item = in || k == count ? -1 : corners->item[k];
+        if (k < count) item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
+        /* From the first row on that is not the one of this item, they are taken away. */
+        rows = part ? gproji_group_at(form->system, part->group)->row_count : 0;
+        if (stream->mode == GPROJI_READ && k < rows && corners->item[k] != item) {
+            for (r = k; r < rows; ++r) corners->row[corners->item[r]] = -1;
+            gproji_renew_group(form->system, part->group, k);
+        }
+        if (!in || k == count || stream->wrong) continue;
         if (corners->row[item] >= 0 || gproji_add_corner(part, item) >= 0) continue;
         if (gproj_system_error(form->system)->code != GPROJ_OK)
             gproji_spoil_memory(stream);

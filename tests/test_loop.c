@@ -358,7 +358,7 @@ GPROJT_TEST(refused_slides) {
         gproj_system_add_row(s, 0, 2, square, -1, 0);
         gprojt_add_linear(s, 1, 0, 1, -3, 0);
         gprojt_add_linear(s, 1, 1, 1, -4, 0);
-        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 60, &options));
+        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 1, false, 60, &options));
         loop.hooks.refuse = gprojt_refuse_some, loop.hooks.user = &refusing;
         GPROJT_CHECK(gproji_run(&loop, -1) && refusing.near);
         GPROJT_CHECK(loop.result.residual <= loop.result.tolerance);
@@ -1334,7 +1334,7 @@ GPROJT_TEST(stiffness_of_the_next_step) {
         gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
         gprojt_add_linear(s, 0, 0, 1, -1, 0);
         gprojt_measure(s, 1, 1, 1);
-        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 20, NULL) && loop.stiff && gproji_compile(s, false) == GPROJ_OK);
+        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 1, false, 20, NULL) && loop.stiff && gproji_compile(s, false) == GPROJ_OK);
         s->solving = true;
         gproji_begin_run(&loop);
         gproji_stiffen(&loop, c->before);
@@ -1700,7 +1700,7 @@ GPROJT_TEST(metric_comes_back) {
     gproji_declare_role(s, 1, GPROJI_METRIC);
     gproj_system_add_row(s, 0, 1, &product, -2, 0);
     for (i = 0; i < 2; ++i) gprojt_measure(s, 1, i, 1);
-    GPROJT_CHECK(gproji_begin_loop(&loop, s, 10, NULL) && loop.stiff);
+    GPROJT_CHECK(gproji_begin_loop(&loop, s, 1, false, 10, NULL) && loop.stiff);
     GPROJT_CHECK(gproji_compile(s, false) == GPROJ_OK);
     gproji_begin_run(&loop);
     gproji_stiffen(&loop, 0);

@@ -406,6 +406,44 @@ GPROJT_TEST(restored_over_another_solve) {
     }
 }
 
+/* Groups and rows of the library that have come in since do not count where a state is restored. */
+GPROJT_TEST(restored_where_groups_came_in) {
+    static const int32_t corner[2] = {0, 6};
+    const double rough = 1.5; /* edges, so that many corners are kept */
+    int way, k;
+    for (way = 0; way < 3; ++way) {
+        gproj_solve_options options = gprojt_nearest_or_not(way == 1), smooth = gprojt_nearest_or_not(0);
+        gprojt_under_way under[2];
+        int32_t vertex = 24;
+        gproj_handles handles = gprojt_vertex_handles(1, &vertex);
+        gproj_drag *drag;
+        double to[3] = {0, 0, 2};
+        uint8_t *state;
+        size_t size;
+        options.smooth = way == 2, smooth.smooth = true;
+        for (k = 0; k < 2; ++k) {
+            under[k].mesh = gprojt_roof(6, 0.3);
+            under[k].form = gproj_form_create(under[k].mesh, NULL);
+            gproj_add_planarity(under[k].form, 1);
+            gproj_add_targets(under[k].form, 2, corner, under[k].mesh->position, 1);
+            gproj_solve_begin(under[k].form, 60, &options, NULL);
+            gproj_solve_advance(under[k].form, 0), gproj_solve_advance(under[k].form, 0);
+        }
+        state = gprojt_save(under[1].form, &size);
+        gprojt_shake(under[1].mesh, rough, 7);
+        gproj_solve(under[1].form, 200, &smooth);
+        drag = gproj_drag_begin(under[1].form, &handles, NULL, NULL);
+        GPROJT_CHECK(drag && gproj_drag_move(drag, to) == GPROJ_OK);
+        gproj_drag_end(drag);
+        GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+        free(state);
+        GPROJT_CHECK(gprojt_go_on(under[0].form).iterations == gprojt_go_on(under[1].form).iterations);
+        for (k = 0; k < 3 * under[0].mesh->vertex_count; ++k) /* all but the last digits */
+            GPROJT_CHECK(fabs(under[0].mesh->position[k] - under[1].mesh->position[k]) < 1e-9);
+        for (k = 0; k < 2; ++k) gproj_form_destroy(under[k].form), gproj_mesh_destroy(under[k].mesh);
+    }
+}
+
 /* A state in frames goes on as its first attempt, not as the last of a solve in between, whose steps are bent. */
 GPROJT_TEST(resumed_after_attempts) {
     gprojt_under_way under[2];
@@ -1270,6 +1308,7 @@ int main(void) {
     GPROJT_RUN(changes_between_frames_are_saved);
     GPROJT_RUN(questions_between_frames);
     GPROJT_RUN(restored_over_another_solve);
+    GPROJT_RUN(restored_where_groups_came_in);
     GPROJT_RUN(resumed_after_attempts);
     GPROJT_RUN(verdicts_are_resumed);
     GPROJT_RUN(resumed_with_forces_that_bend);
