@@ -193,6 +193,10 @@ expect 2 "did you mean boundary?" grid.obj -o new.obj --planar --glide boundray
 expect 2 "--glide edge: there is no such file; expected boundary, or an OBJ file" grid.obj -o new.obj --planar --glide edge
 expect 2 "--planar=1e60: the weight must be a number from 0 to 1e50" grid.obj -o new.obj --planar=1e60
 expect 2 "--fairness 1e60: expected W" grid.obj -o new.obj --planar --fairness 1e60
+for weighted in '--fix boundary=1e60' '--glide boundary=1e60' '--move 0,0,0,0=1e60' '--edge-length 0.5,2=1e60'; do
+    expect 2 'and maybe =W, a weight from 0 to 1e50' grid.obj -o new.obj --planar $weighted
+done
+expect 2 'and maybe =W, a weight from 0 to 1e50' grid.obj -o new.obj --equilibrium --stress 0,2=1e60
 expect 2 "--move 5,1e80,0,0: expected I,X,Y,Z" grid.obj -o new.obj --planar --move 5,1e80,0,0
 : >none.txt
 expect 2 "--fix none.txt: this names no vertex" grid.obj -o new.obj --planar --fix none.txt

@@ -247,7 +247,7 @@ static bool read_schedule(const char *text, size_t size, tool_demand *demand) {
     if (colon && !gprojx_read_integer(colon + 1, size - body - 1, 1, INT32_MAX, &last)) return false;
     star = (const char *)memchr(text, '*', body);
     first = star ? (size_t)(star - text) : body;
-    if (!gprojx_read_number(text, first, &weight) || weight < 0) return false;
+    if (!gprojx_read_number(text, first, &weight) || weight < 0 || weight > MOST_WEIGHT) return false;
     if (star && !gprojx_read_number(star + 1, body - first - 1, &decay)) return false;
     if (decay <= 0 || decay > 1) return false;
     demand->given = true;
@@ -362,8 +362,7 @@ static bool set_must(tool *t, void *place, const char *name, const char *value) 
 /* Reads a wish's schedule: weight 1 if it is left out. */
 static bool set_wish(tool *t, void *place, const char *name, const char *value) {
     if (!value) value = "1";
-    return (read_schedule(value, strlen(value), (tool_demand *)place) &&
-            ((tool_demand *)place)->weight <= MOST_WEIGHT) ||
+    return read_schedule(value, strlen(value), (tool_demand *)place) ||
            fail_value(t, name, value,
                       "W[*DECAY][:N] with a weight W from 0 to 1e50, a DECAY above 0 and at most 1, and a last "
                       "iteration N of 1 or larger (as in '0.2*0.9:6')");
@@ -405,14 +404,16 @@ static bool set_range(tool *t, void *place, const char *name, const char *value)
     tool_demand *range = (tool_demand *)place;
     range->min = 0, range->max = HUGE_VAL;
     return (read_range(value, range) && range->min >= 0 && range->max > 0) ||
-           fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX");
+           fail_value(t, name, value,
+                      "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX, and maybe =W, a weight from 0 to 1e50");
 }
 
 /* Reads bounds of stresses, of either sign. */
 static bool set_stress(tool *t, void *place, const char *name, const char *value) {
     tool_demand *range = (tool_demand *)place;
     range->min = -HUGE_VAL, range->max = HUGE_VAL;
-    return read_range(value, range) || fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with MIN <= MAX");
+    return read_range(value, range) ||
+           fail_value(t, name, value, "MIN,MAX or MIN, or ,MAX with MIN <= MAX, and maybe =W, a weight from 0 to 1e50");
 }
 
 /* Reads LENGTHPRICE,AREAPRICE,MAX; MAX may be xF. */
@@ -584,8 +585,10 @@ static bool add_move(tool *t, void *place, const char *name, const char *value) 
                       : gprojx_read_number(at, (size_t)(comma - at), &move->position[k - 1]);
         if (!good || (comma < end) != (k < 3) || !has_constant_weight(&word) ||
             (k > 0 && fabs(move->position[k - 1]) > MOST_COORDINATE))
-            return fail_value(t, name, value,
-                              "I,X,Y,Z: a vertex and the three coordinates, up to 1e70, of its new place");
+            return fail_value(
+                t, name, value,
+                "I,X,Y,Z: a vertex and the three coordinates, up to 1e70, of its new place, and maybe =W, a "
+                "weight from 0 to 1e50");
     }
     move->weight = word.weight, move->line = t->line;
     for (i = 0; i < t->move_count; ++i)
@@ -1236,7 +1239,9 @@ static bool must_exist(tool *t, const char *option, const char *name, const char
                 option, name, expected, did_you_mean(name, strlen(name), words, hint));
 }
 
-/* Marks the vertices that the value of an option names. */
+#define MARKS "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers"
+
+/* Marks the vertices that the value of an option names; `given`: the option takes a weight, too. */
 static bool mark_vertices(tool *t, const char *option, const tool_demand *word, bool *mark) {
     static const char *const words[] = {"boundary", "corners", NULL};
     bool boundary = same_word(word->text, word->length, "boundary"),
@@ -1251,8 +1256,8 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
     } else if (strspn(name, "0123456789,- ") == word->length) {
         good = mark_list(t, name, option, EXIT_USAGE, mark);
     } else {
-        good = must_exist(t, option, name,
-                          "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers", words);
+        good =
+            must_exist(t, option, name, word->given ? MARKS ", and maybe =W, a weight from 0 to 1e50" : MARKS, words);
         text = good ? load_text(t, name) : NULL;
         good = text && mark_list(t, text, name, EXIT_REFUSED, mark);
         free(text);
@@ -1352,7 +1357,8 @@ static bool add_gliding(tool *t, const tool_demand *word) {
         static const char *const words[] = {"boundary", NULL};
         char *name = copy_text(t, word->text, word->length);
         gproj_mesh *mesh = NULL;
-        if (name && must_exist(t, "--glide", name, "boundary, or an OBJ file with polylines", words))
+        if (name && must_exist(t, "--glide", name,
+                               "boundary, or an OBJ file with polylines, and maybe =W, a weight from 0 to 1e50", words))
             mesh = load(t, word->text, word->length, NULL);
         free(name);
         good = mesh && add_curves(t, mesh, false, word->text);
@@ -1524,6 +1530,7 @@ typedef struct tool_option {
     int32_t (*add)(tool *t, const tool_demand *demand);
     const tool_need *needs;
     bool repeatable;
+    bool of_boundary;    /* asks for nothing of a closed mesh */
     char letter;         /* 'o' for -o; 0: none */
     const char *section; /* a heading above this option; NULL: none */
 } tool_option;
@@ -1606,11 +1613,11 @@ static const tool_option options[] = {
      "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
      set_cost, PLACE(cost), HARD, SIZES, .add = add_cost},
     {"planar-boundary", "[=W]", "each part of the boundary between corners lies in a plane of its own", set_must, 0,
-     HARD, SHAPES, .build = gproj_add_planar_boundary},
+     HARD, SHAPES, .build = gproj_add_planar_boundary, .of_boundary = true},
     {"straight-boundary", "[=W]", "the boundary is straight between its corners", set_must, 0, HARD, SHAPES,
-     .build = gproj_add_straight_boundary},
+     .build = gproj_add_straight_boundary, .of_boundary = true},
     {"orthogonal-boundary", "[=W]", "inner edges meet the boundary at right angles", set_must, 0, HARD, SHAPES,
-     .build = gproj_add_orthogonal_boundary},
+     .build = gproj_add_orthogonal_boundary, .of_boundary = true},
     {"lifting", "[=W]", "vertices keep their x and y and move in z only", set_must, 0, HARD, SHAPES,
      .build = gproj_add_lifting},
     {"volume", "V",
@@ -1663,7 +1670,8 @@ static const tool_option options[] = {
      "stay near the original places; --closeness 0: the plain projection, whose steps are neither smooth nor guided",
      set_wish, PLACE(closeness), SOFT, WISHES, .build = gproj_add_closeness},
     {"fairness", "W", "smooth polylines of edges", set_wish, 0, SOFT, WISHES, .build = gproj_add_fairness},
-    {"boundary-fairness", "W", "smooth boundary", set_wish, 0, SOFT, WISHES, .build = gproj_add_boundary_fairness},
+    {"boundary-fairness", "W", "smooth boundary", set_wish, 0, SOFT, WISHES, .build = gproj_add_boundary_fairness,
+     .of_boundary = true},
     {"tangential", "W", "smooth polylines, as seen along the surface's normals", set_wish, 0, SOFT, WISHES,
      .build = gproj_add_tangential_fairness},
     {"gauss", "W", "smooth Gauss image: face normals change evenly", set_wish, 0, SOFT, WISHES,
@@ -2195,7 +2203,7 @@ static bool add_option(tool *t, int row) {
     const tool_option *option = &options[row];
     const tool_demand *demand = (const tool_demand *)place_of(t, row);
     int32_t group = -1;
-    if (!option->add && demand->weight > 0 && t->mesh->loop_count == 0 && strstr(option->name, "boundary"))
+    if (!option->add && demand->weight > 0 && t->mesh->loop_count == 0 && option->of_boundary)
         return fail(t, EXIT_USAGE, "--%s: the mesh is closed and has no boundary", option->name);
     if (option->add)
         group = option->add(t, demand);
