@@ -1777,8 +1777,9 @@ GPROJ_API size_t gproj_state_size(gproj_form *form);
 GPROJ_API gproj_code gproj_state_save(gproj_form *form, void *buffer, size_t size, gproj_error *error);
 /* Restores a state. Refused, with a sentence and without a change, if the bytes are no state, are damaged or cut off
    (GPROJ_ERROR_SYNTAX), or belong to another form (GPROJ_ERROR_ARGUMENT); and during a solve or a drag
-   (GPROJ_ERROR_STATE). Without memory the form has that error. A restored solve in frames has the callbacks of the
-   solve that is on in the form, or none if none is on. */
+   (GPROJ_ERROR_STATE). Bytes that were made up, with the right checksum, may leave groups of the library's own in the
+   form. Without memory the form has that error, and the mesh is where it was. A restored solve in frames has the
+   callbacks of the solve that is on in the form, or none if none is on. */
 GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, size_t size, gproj_error *error);
 
 #ifdef __cplusplus
@@ -8190,7 +8191,7 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     return true;
 }
 
-/* Counts what was added to a system. Nothing is ever taken away, so an equal number of all means equal structure. */
+/* Counts what was added to a system. Of this nothing is ever taken away, so an equal number means equal structure. */
 typedef struct gproji_structure {
     int32_t groups;
     int64_t all; /* variables, groups and rows, but for those of safeguards, which come on demand */
@@ -9243,7 +9244,7 @@ GPROJI_INTERNAL void gproji_solve_step(gproj_system *s) { gproji_finish_step(s, 
    next to no area, and rows determine next to nothing about the normal: it gets 1e-3 eps^2 after all, added to R'R.
 
    These steps differ from those with the matrix for all variables, though all lead to feasible points. The choice among
-   them depends on a form's groups alone, not on history: on those that have ever had a weight (gproji_wake_groups).
+   them depends on the groups that have ever had a weight (gproji_wake_groups) and on their rows; a state brings both.
    Solves for the nearest point and drags always take the matrix for all variables. A guard's dormant rows have no
    multipliers until one acts; then those near to acting get them: few ever do.
 
@@ -12194,14 +12195,17 @@ GPROJI_INTERNAL void gproji_pass_group(gproji_stream *stream, gproj_system *s, i
     for (r = 0; passing && r < g->row_count && !stream->wrong; ++r) gproji_pass_standing(stream, s, group, r, passing);
 }
 
-/* Leaves a group as if it had never had a weight, so that steps are found without it (gproji_wake_groups), and with
-   its first `rows` rows: all of them, but for safeguards, whose rows come and go. */
+/* Leaves a group as if it had never had a weight, so that steps are found without it (gproji_wake_groups) and a guard
+   is dormant, and with its first `rows` rows: all of them, but for safeguards, whose rows come and go. */
 GPROJI_INTERNAL void gproji_renew_group(gproj_system *s, int32_t group, int32_t rows) {
     gproji_group *g = &s->group[group];
+    int32_t r;
     s->schur.stale = s->schur.stale || !g->idle;
     g->schedule = gproj_keep(0);
     g->weight = 0;
     g->idle = true;
+    g->guard.activations = 0;
+    for (r = 0; r < g->row_count; ++r) g->row[r].dormant = g->role == GPROJI_GUARD;
     if (rows == g->row_count) return;
     gproji_system_forget(s);
     g->sources = g->term_count = g->row[rows].term;
@@ -22081,19 +22085,14 @@ enum {
     GPROJI_GUARD_LONGER = 2
 };
 
-/* The part's entries are the faces that are guarded. */
-typedef struct gproji_guard {
-    bool on;      /* in this solve */
-    double *area; /* 3 per face: the vectorial area when the solve began */
-} gproji_guard;
-
-GPROJI_INTERNAL gproji_guard *gproji_guard_of(const gproji_part *part) { return (gproji_guard *)part->data; }
+/* The part's entries are the faces that are guarded, its data the vectorial areas when the solve began, 3 per face. */
+GPROJI_INTERNAL double *gproji_guarded_areas(const gproji_part *part) { return (double *)part->data; }
 
 /* The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
     static const double none[3] = {0, 0, 0};
     int32_t normal = part->form->normal[part->element[index]];
-    gproji_copy3(normal >= 0 ? x + normal : gproji_guard_of(part)->area + 3 * (size_t)index, out);
+    gproji_copy3(normal >= 0 ? x + normal : gproji_guarded_areas(part) + 3 * (size_t)index, out);
     gproji_normalise3(out, none);
 }
 
@@ -22104,7 +22103,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     double wanted = progress->tangential ? gproji_guard_small : gproji_guard_wanted;
     int32_t i, count, t, k;
     for (i = 0; i < part->count; ++i) {
-        double n[3], area = gproji_length3(gproji_guard_of(part)->area + 3 * (size_t)i);
+        double n[3], area = gproji_length3(gproji_guarded_areas(part) + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         gproji_place_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
         if (!(area > gproji_guard_area)) continue;
@@ -22122,10 +22121,9 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
 /* Has a face lost most of the area in the step to x from `before`, seen along its normal or the one it had at first? */
 GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, const double *x) {
     const gproji_part *part = gproji_own_part((const gproj_form *)user, GPROJI_OWN_GUARD);
-    const gproji_guard *guard = gproji_guard_of(part);
     int32_t i, k;
-    for (i = 0; guard->on && i < part->count; ++i) {
-        const double *first = guard->area + 3 * (size_t)i;
+    for (i = 0; gproji_is_on(part->form, part->group) && i < part->count; ++i) {
+        const double *first = gproji_guarded_areas(part) + 3 * (size_t)i;
         double axis[2][3], was[3], is[3];
         if (gproji_length3(first) <= gproji_guard_area) continue;
         gproji_area_vector(part->form->mesh, before, part->element[i], was);
@@ -22142,8 +22140,7 @@ GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, cons
 
 GPROJI_INTERNAL void gproji_pass_guard(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     if (!passing) return;
-    gproji_pass_bool(stream, &gproji_guard_of(part)->on);
-    gproji_pass_doubles(stream, gproji_guard_of(part)->area, 3 * (size_t)part->count);
+    gproji_pass_doubles(stream, gproji_guarded_areas(part), 3 * (size_t)part->count);
 }
 
 static const gproji_acts gproji_guard_acts = {gproji_refresh_guard, NULL, NULL, gproji_pass_guard};
@@ -22154,16 +22151,13 @@ static const gproji_rule gproji_guard_rule = {"guard",          GPROJ_BOUND,  GP
 GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     gproj_term term[6 * GPROJI_GUARD_DEGREE];
-    gproji_guard *guard;
     gproji_part *part;
     int32_t f, h, c, k, terms, count = 0;
     for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
     part = gproji_new_part(form, &gproji_guard_rule, count);
-    guard = (gproji_guard *)gproji_part_take(part, 1, sizeof *guard);
-    if (!guard) return;
-    part->data = guard;
-    guard->area = (double *)gproji_part_take(part, 3 * (int64_t)count, sizeof *guard->area);
-    if (!guard->area || gproji_add_group(part, 0) < 0) return;
+    if (!part) return;
+    part->data = gproji_part_take(part, 3 * (int64_t)count, sizeof(double));
+    if (!part->data || gproji_add_group(part, 0) < 0) return;
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->element[count++] = f;
@@ -22194,13 +22188,12 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
     if (wanted && !gproji_own_part(form, GPROJI_OWN_GUARD)) gproji_add_guard(form);
     part = gproji_own_part(form, GPROJI_OWN_GUARD);
     if (!part || !gproji_form_ready(form)) return;
-    gproji_guard_of(part)->on = wanted;
     gproj_system_set_schedule(
         form->system, part->group,
         gproj_fade(wanted ? gproji_guard_weight : 0, gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; i < part->count; ++i)
         gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
-                           gproji_guard_of(part)->area + 3 * (size_t)i);
+                           gproji_guarded_areas(part) + 3 * (size_t)i);
 }
 
 /* ============================================================================================================
@@ -22228,7 +22221,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_dihedral_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
-   it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve.
+   it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve; a
+   restored state brings its own.
 
    Solves for the nearest mesh go without them, until the mesh is spoiled: then all edges and, in planar faces, all
    corners along m0 get rows that ask for their floors (gproji_mend_corners). */
@@ -22249,7 +22243,8 @@ static const double gproji_dihedral_wanted = 0;   /* what this asks for */
 static const double gproji_dihedral_floor = -0.3; /* asked of sharper bends */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
-    GPROJI_CORNER_TERMS = 18
+    GPROJI_CORNER_TERMS = 18,
+    GPROJI_CORNER_LISTED = 2 /* in `marked`, while a state is passed: it has the item */
 };
 
 /* Item 2 h + k is the corner behind half-edge h, seen along the face's normal (k = 0) or the first one (k = 1); behind
@@ -22266,6 +22261,7 @@ typedef struct gproji_corners {
     int32_t bends;   /* the item of the bend at half-edge 0 */
     int32_t items;
     int32_t rounds; /* in this solve: how often items were marked */
+    int32_t listed; /* rows in the state that is being passed */
 } gproji_corners;
 
 GPROJI_INTERNAL gproji_corners *gproji_corners_of(const gproji_part *part) { return (gproji_corners *)part->data; }
@@ -22527,21 +22523,13 @@ GPROJI_INTERNAL void gproji_pass_corners(gproji_part *part, gproji_stream *strea
     gproji_corners *corners = gproji_corners_of(part);
     gproj_system *s = part->form->system;
     const gproj_mesh *mesh = part->form->mesh;
-    int32_t count = gproji_group_at(s, part->group)->row_count, r;
+    int32_t r;
     if (!passing) return;
     gproji_pass_doubles(stream, corners->size, (size_t)mesh->halfedge_count);
     gproji_pass_doubles(stream, corners->length, (size_t)mesh->edge_count);
     gproji_pass_doubles(stream, corners->axis, 3 * (size_t)mesh->face_count);
     gproji_pass_integer(stream, &corners->rounds, 0, INT32_MAX / 2);
-    count = gproji_pass_integer(stream, &count, 0, corners->items);
-    for (r = 0; r < count && !stream->wrong; ++r) {
-        int32_t item = gproji_comes_in(stream) ? 0 : corners->item[r];
-        item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
-        if (stream->wrong || corners->row[item] < 0)
-            gproji_spoil(stream, "a corner or edge has no row");
-        else
-            gproji_pass_standing(stream, s, part->group, corners->row[item], passing);
-    }
+    for (r = 0; r < corners->listed && !stream->wrong; ++r) gproji_pass_standing(stream, s, part->group, r, passing);
     if (stream->mode == GPROJI_READ) gproji_refresh_corners(part, s, part->group, NULL);
 }
 
@@ -23714,7 +23702,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstK", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstL", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -23790,12 +23778,17 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
             gproji_renew_group(form->system, part->group, k);
         }
         if (!in || k == count || stream->wrong) continue;
+        if (stream->mode == GPROJI_CHECK && (corners->marked[item] & GPROJI_CORNER_LISTED))
+            gproji_spoil(stream, "a corner comes twice");
+        corners->marked[item] |= GPROJI_CORNER_LISTED;
         if (corners->row[item] >= 0 || gproji_add_corner(part, item) >= 0) continue;
         if (gproj_system_error(form->system)->code != GPROJ_OK)
             gproji_spoil_memory(stream);
         else
             gproji_spoil(stream, "a corner is not one of a face");
     }
+    for (k = 0; in && corners && k < corners->items; ++k) corners->marked[k] &= (uint8_t)~GPROJI_CORNER_LISTED;
+    if (corners) corners->listed = count;
 }
 
 /* Passes the state between head and checksum. */
@@ -23803,22 +23796,21 @@ GPROJI_INTERNAL void gproji_pass_state(gproji_stream *stream, gproj_form *form) 
     gproji_passing passing = GPROJI_PASS_NONE;
     gproji_solve solve = form->solve;
     bool read = stream->mode == GPROJI_READ;
-    if (read) { /* nothing of the solve before, but whom it tells */
+    if (read) { /* the loop has nothing of the solve before, but whom it tells */
         memset(&solve.loop, 0, sizeof solve.loop);
         if (form->solve.on) solve.loop.options.on_iteration = form->solve.loop.options.on_iteration;
         if (form->solve.on) solve.loop.options.user = form->solve.loop.options.user;
         solve.loop.result.spoiled.element = -1;
         solve.loop.result.attempts = 1;
     }
+    /* First what needs memory: rows, and a solve in frames, if one is on. */
     gproji_pass_own_groups(stream, form);
     if (!gproji_form_ready(form)) return;
+    if (gproji_pass_bool(stream, &solve.on)) passing = gproji_pass_loop(stream, form->system, &solve.loop);
+    if (stream->wrong) return;
     gproji_pass_doubles(stream, form->mesh->position, 3 * (size_t)form->mesh->vertex_count);
     gproji_pass_doubles(stream, gproj_system_values(form->system), (size_t)gproj_system_variable_count(form->system));
-    /* A solve in frames, if one is on. */
-    if (gproji_pass_bool(stream, &solve.on))
-        passing = gproji_pass_loop(stream, form->system, &solve.loop);
-    else if (read)
-        form->solve.on = form->solve.finished = false;
+    if (read && !solve.on) form->solve.on = form->solve.finished = false;
     if (read && solve.on) {
         solve.structure = gproji_structure_of(form->system);
         form->solve = solve;
@@ -23872,7 +23864,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'K'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'L'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
@@ -23948,6 +23940,7 @@ GPROJI_INTERNAL gproj_code gproji_read_state(gproj_form *form, const void *state
     in.mode = GPROJI_READ;
     gproji_pass_state(&in, form);
     if (in.exhausted) return gproji_fail_memory(&form->error), gproji_pass_on(error, &form->error);
+    GPROJ_ASSERT(!in.wrong);                 /* as it has been checked */
     gproji_set_changed(form->system, false); /* the numbers are as saved */
     return GPROJ_OK;
 }
