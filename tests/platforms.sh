@@ -13,8 +13,8 @@
 export GPROJ_DATA=/nonexistent LIMIT=1800
 # Cases that platforms go without. Emulated: half a minute or more, for speed, memory or threads.
 slow='cholesky_large cholesky_panels_and_updates_share_memory cholesky_every_allocation_fails fairness_at_poles
-    resumed_to_the_same_bytes resumed_while_it_is_mended same_bits_for_all_workers verdicts_of_random_sets
-    planarity_with_a_pole'
+    resumed_to_the_same_bytes resumed_while_it_is_mended restored_without_memory same_bits_for_all_workers
+    verdicts_of_random_sets planarity_with_a_pole'
 # Windows: compares with strtod and printf, whose last digits are wrong in the C library there.
 windows='round_trip_random_bits'
 # x87: the tests themselves compare doubles with constants, or bits with bits, that have the longer registers' digits; and
