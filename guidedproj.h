@@ -22122,7 +22122,8 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
 GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, const double *x) {
     const gproji_part *part = gproji_own_part((const gproj_form *)user, GPROJI_OWN_GUARD);
     int32_t i, k;
-    for (i = 0; gproji_is_on(part->form, part->group) && i < part->count; ++i) {
+    if (!gproji_is_on(part->form, part->group)) return false;
+    for (i = 0; i < part->count; ++i) {
         const double *first = gproji_guarded_areas(part) + 3 * (size_t)i;
         double axis[2][3], was[3], is[3];
         if (gproji_length3(first) <= gproji_guard_area) continue;
@@ -23751,7 +23752,7 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
 /* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form
    gets those that come in, and when they are read no others: how steps are found depends on them. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
-    int32_t list[GPROJI_OWN_COUNT], count = 0, rows, k, r;
+    int32_t list[GPROJI_OWN_COUNT], count = 0, k, r;
     bool in = gproji_comes_in(stream);
     gproji_corners *corners;
     gproji_part *part;
@@ -23769,10 +23770,10 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
     count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
     count = gproji_pass_integer(stream, &count, 0, corners ? corners->items : 0);
     for (k = 0; k <= count && !stream->wrong; ++k) {
-        int32_t item = in || k == count ? -1 : corners->item[k];
+        int32_t rows = part ? gproji_group_at(form->system, part->group)->row_count : 0;
+        int32_t item = in || k == count ? -1 : corners->item[k]; /* behind the list: none */
         if (k < count) item = gproji_pass_integer(stream, &item, 0, corners->items - 1);
         /* From the first row on that is not the one of this item, they are taken away. */
-        rows = part ? gproji_group_at(form->system, part->group)->row_count : 0;
         if (stream->mode == GPROJI_READ && k < rows && corners->item[k] != item) {
             for (r = k; r < rows; ++r) corners->row[corners->item[r]] = -1;
             gproji_renew_group(form->system, part->group, k);

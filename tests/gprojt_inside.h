@@ -31,7 +31,7 @@ bool gprojt_inside_is_safeguard(const gproj_form *form, int32_t group);
    that the last step has left. Written to the form if `set`, else read from it. */
 void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]);
 
-/* Leaves nonsense of the solve before, none of which is on. */
+/* Fills all that the form keeps of its last solve with nonsense; none is on. */
 void gprojt_inside_spoil_solve(gproj_form *form);
 
 /* Do the safeguards of corners refuse a step between these variables? Does the guard of faces? */

@@ -472,7 +472,7 @@ GPROJT_TEST(restored_without_memory) {
     gproj_solve_options options = gprojt_nearest_or_not(1);
     gproj_code code = GPROJ_ERROR_MEMORY;
     long at;
-    for (at = 1; code != GPROJ_OK && at < 1000; at += at < 10 ? 1 : 29) { /* the allocation that fails */
+    for (at = 1; code != GPROJ_OK && at < 1000; at += at < 10 ? 1 : 29) { /* which allocation fails */
         gprojt_failing failing;
         gproj_host host;
         gprojt_under_way under;

@@ -1239,6 +1239,7 @@ static bool must_exist(tool *t, const char *option, const char *name, const char
                 option, name, expected, did_you_mean(name, strlen(name), words, hint));
 }
 
+/* What names vertices, for sentences. */
 #define MARKS "boundary, corners, a list of vertices such as 0,7,20-29, or a file of such numbers"
 
 /* Marks the vertices that the value of an option names; `given`: the option takes a weight, too. */
