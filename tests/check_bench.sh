@@ -13,7 +13,7 @@ grep -q "^bench needs .*$needs" "$work/without.txt" && pass || fail 'make -C too
 # A copy, so that a user's program and its objects stay as they are.
 mkdir "$work/clone" && cp -r "$root/tools" "$root/guidedproj.h" "$work/clone" && rm -f "$work"/clone/tools/*.o
 root=$work/clone
-tools bench BENCH_FLAGS='-O0' >"$work/make.txt" 2>&1
+tools bench BENCH_FLAGS='-O0 -Wno-misleading-indentation' >"$work/make.txt" 2>&1
 if grep -q '^bench needs' "$work/make.txt"; then
     skip "bench: no $needs"
     report

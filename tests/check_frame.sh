@@ -13,7 +13,7 @@ compile() { # compile NAME LIBRARY FLAGS...: tools/frame.c, with the library tha
     ${CC:-cc} -std=c11 -Wall -Wextra -Werror "$@" ${library:+-DGPROJI_IMPLEMENTED} "$root/tools/frame.c" $library \
         -o "$work/$name" -lm -lpthread || { fail "tools/frame.c does not compile ($*)"; report; }
 }
-compile frame build/library.san.a -O1 -fsanitize=address,undefined -fno-sanitize-recover=all
+compile frame build/library.san.a -O1 -fsanitize=address,undefined -fno-sanitize-recover=all ${RUNTIME:-}
 compile fast build/library.a -O2
 data=$(existing "${GPROJ_DATA:-../../shared/data}")
 cd "$work" || exit 2

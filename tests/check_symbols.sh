@@ -17,10 +17,10 @@ for switch in '' -DGPROJ_NO_STDIO; do
     have gcc || break
     job "gcc $switch" "gcc $fixed -I'$root' $switch -c twice.c -o 'symbols$switch.o'"
 done
-for compiler in gcc g++ clang clang++ gcc:-DGPROJ_NO_SIMD gcc:-DGPROJ_NO_STDIO; do
-    have ${compiler%%:*} || { skip "$compiler: not installed"; continue; }
+for compiler in gcc g++ clang clang++ 'gcc -DGPROJ_NO_SIMD -DGPROJ_NO_STDIO'; do
+    have ${compiler%% *} || { skip "$compiler: not installed"; continue; }
     case $compiler in *++) file=whole.cpp ;; *) file=whole.c ;; esac
-    job "$compiler in static mode" "${compiler/:/ } $fixed -I'$root' -DGPROJ_STATIC -c $file -o 'static.$compiler.o'"
+    job "$compiler in static mode" "$compiler $fixed -I'$root' -DGPROJ_STATIC -c $file -o 'static.$compiler.o'"
 done
 run_jobs
 # -O1 leaves out what a program in static mode does not call.
