@@ -362,6 +362,16 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
     gproj_add_gliding_boundary(form, 1);
 }
 
+enum {
+#ifdef GPROJT_SANITIZED /* which sees nothing new in those between */
+    GPROJT_SAVED_AFTER = 5,
+    GPROJT_PATCHES_STEP = 3
+#else
+    GPROJT_SAVED_AFTER = 1,
+    GPROJT_PATCHES_STEP = 1
+#endif
+};
+
 /* Small patches with a fixed or gliding boundary, some of which have hardly another way than to lose an edge or to fold:
    nearly all of 36 stay whole, because edges and bends are kept as well as corners (20 without bends), and give way in two
    stages (24 in one), some of them in a later attempt. */
@@ -371,7 +381,7 @@ GPROJT_TEST(patches_stay_whole) {
     static const int32_t sizes[3] = {5, 6, 5};
     int i, k, whole = 0, helped = 0;
     for (k = 0; k < 3; ++k)
-        for (i = 1; i <= 12; ++i) {
+        for (i = GPROJT_PATCHES_STEP; i <= 12; i += GPROJT_PATCHES_STEP) {
             double planarity;
             gproj_result result = gprojt_solve_twisted(sizes[k], 0.05 * i, build[k], &planarity);
             if (result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0 || planarity > 1e-12) continue;
@@ -379,6 +389,7 @@ GPROJT_TEST(patches_stay_whole) {
             helped += result.attempts > 1;
             GPROJT_CHECK(!strstr(result.message, "attempts ended better"));
         }
+    whole *= GPROJT_PATCHES_STEP, helped *= GPROJT_PATCHES_STEP;
     if (whole < 34 || helped < 3) printf("  %d whole, %d of them in a later attempt\n", whole, helped);
     GPROJT_CHECK(whole >= 34 && helped >= 3);
 }
@@ -706,16 +717,6 @@ GPROJT_TEST(ends_are_compared) {
     for (i = 0; i < 6; ++i)
         for (j = 0; j < 6; ++j) GPROJT_CHECK(gprojt_inside_ends_better(&end[i], &end[j]) == (i < j));
 }
-
-#ifdef GPROJT_SANITIZED
-enum {
-    GPROJT_SAVED_AFTER = 5 /* sanitizers see nothing new in those between */
-};
-#else
-enum {
-    GPROJT_SAVED_AFTER = 1
-};
-#endif
 
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
    and in a new one. */
