@@ -978,8 +978,9 @@ GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, doubl
 /* Cuts faces into triangles by diagonals: `face`, or all faces if it is -1. Takes triangles that are not turned over in
    the plane orthogonal to the face's vectorial area (if possible: the face may be non-convex, but must not cross itself
    there), and among these the best ones: with the least sum of (a^2 + b^2 + c^2) / area (Klincsek 1980). Faces with
-   more than 128 corners lose ears first until 128 are left (Meisters 1975). Refused if each way needs a diagonal that
-   is an edge already. Returns the number of new faces. */
+   more than 128 corners lose ears first until 128 are left (Meisters 1975; those with more than 1365 as far as 2048
+   looks a corner find them, so that work is linear in the mesh). Refused if each way needs a diagonal that is an edge
+   already. Returns the number of new faces. */
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
 
 /* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
@@ -1126,7 +1127,8 @@ GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
 /* The closest point. Without a curve or a point: segment -1, infinite distance, zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
-/* The mesh's faces, cut into triangles. Refused if the mesh has no faces. */
+/* The mesh's faces, cut into triangles, which cover each face that does not cross itself (of up to 1365 corners; larger
+   ones if no more than 2048 looks a corner are needed, so that work is linear). Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
 /* The closest point. Without a surface or a point: face -1, infinite distance, zeros. */
@@ -15055,7 +15057,10 @@ typedef struct gproji_polygon {
     int32_t *vertex; /* 1 a corner: vertices in the mesh */
     int32_t *next;   /* 1 a corner: the ring of corners that are left */
     int32_t *prev;
-    int32_t *ear; /* 3 a corner: the ears cut so far, each with the corners before and after it */
+    int32_t *ear;    /* 3 a corner: the ears cut so far, each with the corners before and after it */
+    bool *tried;     /* 1 a corner: it was no ear, and has the same neighbours still */
+    int32_t *reflex; /* corners that did not turn left when they were last looked at */
+    int32_t reflex_count;
     int32_t ears;
     int32_t count;
     double tolerance; /* areas below it count as zero */
@@ -15068,6 +15073,8 @@ GPROJI_INTERNAL bool gproji_polygon_take(gproji_polygon *polygon, gproji_pool *p
     polygon->next = gproji_take_ints(pool, degree);
     polygon->prev = gproji_take_ints(pool, degree);
     polygon->ear = (int32_t *)gproji_pool_take(pool, degree, 3 * sizeof(int32_t));
+    polygon->tried = (bool *)gproji_pool_take(pool, degree, sizeof(bool));
+    polygon->reflex = gproji_take_ints(pool, degree);
     return !pool->failed;
 }
 
@@ -15093,42 +15100,59 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     polygon->tolerance = 1e-9 * extent;
 }
 
-/* True if corner b is an ear: it turns left and no other corner is in the triangle a b c. Takes each corner looked at
-   from the budget. */
-GPROJI_INTERNAL bool gproji_is_ear(const gproji_polygon *polygon, int32_t b, int64_t *budget) {
-    int32_t a = polygon->prev[b], c = polygon->next[b], i;
+/* True if corner b is an ear: it turns left and no other corner is in the triangle a b c; if any is, one is that does
+   not turn left. Those that do by now leave the list. Takes each corner looked at from the budget. */
+GPROJI_INTERNAL bool gproji_is_ear(gproji_polygon *polygon, int32_t b, int64_t *budget) {
+    int32_t a = polygon->prev[b], c = polygon->next[b], k = 0;
     if (gproji_turn2(polygon->xy, a, b, c) <= polygon->tolerance) return false;
-    for (i = polygon->next[c]; i != a; i = polygon->next[i]) {
+    while (k < polygon->reflex_count) {
+        int32_t i = polygon->reflex[k];
         --*budget;
-        /* if any corner is in the triangle, one that turns right is */
-        if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) > 0) continue;
-        if (gproji_turn2(polygon->xy, a, b, i) >= 0 && gproji_turn2(polygon->xy, b, c, i) >= 0 &&
-            gproji_turn2(polygon->xy, c, a, i) >= 0) {
-            return false;
+        if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) > 0) {
+            polygon->reflex[k] = polygon->reflex[--polygon->reflex_count];
+            continue;
         }
+        if (i != a && i != c && gproji_turn2(polygon->xy, a, b, i) >= 0 && gproji_turn2(polygon->xy, b, c, i) >= 0 &&
+            gproji_turn2(polygon->xy, c, a, i) >= 0)
+            return false;
+        ++k;
     }
     return true;
 }
 
 /* Cuts ears, from corner b on, until `least` corners are left; returns one of them, or -1 if all ways to go on need a
-   diagonal that `mesh` has as an edge already (NULL: that does no harm). If no corner is an ear (the face crosses
-   itself), or 512 looks a corner are used up (so that time is linear in the mesh), any is cut off. */
+   diagonal that `mesh` has as an edge already (NULL: that does no harm). Where an ear is cut off, only its neighbours
+   can become ears (O'Rourke 1998), so three times the corners are tried. If none is an ear (the face crosses itself),
+   or 2048 looks a corner are used up (so that time is linear in the mesh; 1365 corners, half of them reflex, need no
+   more), any is cut off. */
 GPROJI_INTERNAL int32_t gproji_cut_ears(gproji_polygon *polygon, int32_t b, int32_t least, const gproj_mesh *mesh) {
-    int64_t budget = 512 * (int64_t)polygon->count;
-    int32_t left = polygon->count, refused = 0;
-    bool any = false;
+    int64_t budget = 2048 * (int64_t)polygon->count;
+    int32_t left = polygon->count, refused = 0, i;
+    bool any = false, anew = true;
     while (left > least) {
         int32_t a = polygon->prev[b], c = polygon->next[b], *ear = polygon->ear + 3 * (size_t)polygon->ears;
+        /* 1. At first, and where no ear was cut off, all corners may be others than before. */
+        if (anew) polygon->reflex_count = 0, budget -= left;
+        for (i = b; anew; i = polygon->next[i], anew = i != b) {
+            polygon->tried[i] = false;
+            if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) <= 0)
+                polygon->reflex[polygon->reflex_count++] = i;
+        }
+        /* 2. On to the next corner, unless this one can go. */
         any = any || refused >= left || budget <= 0;
         if (refused >= 2 * left) return -1;
         if ((mesh && gproji_halfedge_between(mesh, polygon->vertex[a], polygon->vertex[c]) >= 0) ||
-            (!any && !gproji_is_ear(polygon, b, &budget))) {
+            (!any && (polygon->tried[b] || !gproji_is_ear(polygon, b, &budget)))) {
+            polygon->tried[b] = true;
             ++refused, b = c;
             continue;
         }
+        /* 3. Cut it off. */
         ear[0] = a, ear[1] = b, ear[2] = c;
         polygon->next[a] = c, polygon->prev[c] = a;
-        ++polygon->ears, --left, refused = 0, any = false;
+        polygon->tried[a] = polygon->tried[c] = false;
+        ++polygon->ears, --left, refused = 0;
+        anew = any && budget > 0, any = false;
         b = c;
     }
     return b;

@@ -36,6 +36,21 @@ static inline void gprojt_add_face(gprojt_soup *s, int32_t degree, const int32_t
     s->corner_count += degree;
 }
 
+/* A face along a strip that winds around ten times: nearly every corner is hidden from most others. */
+static inline void gprojt_add_spiral(gprojt_soup *s, int32_t corners) {
+    int32_t half = corners / 2, first = s->vertex_count, side, i;
+    int32_t *corner = (int32_t *)malloc(2 * (size_t)half * sizeof *corner);
+    if (!corner) abort();
+    for (side = 0; side < 2; ++side)
+        for (i = 0; i < half; ++i) {
+            double angle = 20 * 3.141592653589793 * i / half, radius = 1 + 0.1 * angle + 0.2 * side;
+            corner[side ? 2 * half - 1 - i : i] = first + side * half + i;
+            gprojt_add_vertex(s, radius * cos(angle), radius * sin(angle), 0);
+        }
+    gprojt_add_face(s, 2 * half, corner);
+    free(corner);
+}
+
 static inline void gprojt_add_triangle(gprojt_soup *s, int32_t a, int32_t b, int32_t c) {
     int32_t corner[3];
     corner[0] = a, corner[1] = b, corner[2] = c;

@@ -1287,6 +1287,30 @@ GPROJT_TEST(what_would_be_no_mesh_is_refused) {
     gproj_edit_destroy(e);
 }
 
+GPROJT_TEST(spirals_turn_no_triangle_over) {
+    int32_t corners;
+    for (corners = 140; corners <= 1340; corners += 400) {
+        gprojt_soup s;
+        gproj_mesh *mesh;
+        gproj_edit *e;
+        double whole[3], part[3], sum = 0;
+        int32_t f;
+        memset(&s, 0, sizeof s);
+        gprojt_add_spiral(&s, corners);
+        mesh = gprojt_soup_mesh(&s, NULL, NULL);
+        gproj_mesh_face_area_vector(mesh, 0, whole);
+        gproj_mesh_destroy(mesh);
+        e = gprojt_edit_soup(s);
+        GPROJT_REQUIRE(e != NULL);
+        GPROJT_CHECK(gproj_edit_triangulate(e, 0, NULL) == corners - 3);
+        mesh = gprojt_edit_mesh(e);
+        for (f = 0; f < mesh->face_count; ++f) gproj_mesh_face_area_vector(mesh, f, part), sum += gprojt_length3(part);
+        GPROJT_NEAR(sum, gprojt_length3(whole), 1e-9 * sum);
+        gproj_mesh_destroy(mesh);
+        gproj_edit_destroy(e);
+    }
+}
+
 /* A face with n corners, and around it a cone of quads i + 1, i, i + 2 and the apex, which have all the diagonals that cut
    off a corner: no triangle can be the first. */
 GPROJT_TEST(ears_that_are_edges) {
@@ -1393,6 +1417,7 @@ int main(void) {
     GPROJT_RUN(a_large_mesh_made_small);
     GPROJT_RUN(arguments_are_checked);
     GPROJT_RUN(what_would_be_no_mesh_is_refused);
+    GPROJT_RUN(spirals_turn_no_triangle_over);
     GPROJT_RUN(ears_that_are_edges);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();

@@ -460,37 +460,48 @@ GPROJT_TEST(smooth_normals) { /* on a sphere the interpolated normal is the radi
     gprojt_soup_free(&s);
 }
 
-GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces: the triangles cover the face, no more and no less */
+/* The triangles cover the soup's face, no more and no less; frees the soup. */
+static void gprojt_check_cover(gprojt_soup *s) {
+    gproj_mesh *mesh = gprojt_soup_mesh(s, NULL, NULL);
+    gproj_surface *surface = gproj_surface_create(mesh, NULL, NULL);
+    double area[3], sum = 0;
+    int32_t t;
+    GPROJT_REQUIRE(surface != NULL);
+    gproj_mesh_face_area_vector(mesh, 0, area);
+    for (t = 0; t < surface->triangle_count; ++t) {
+        const int32_t *v = surface->triangle + 3 * t;
+        double a[3], b[3], c[3];
+        gprojt_sub3(s->position + 3 * v[1], s->position + 3 * v[0], a);
+        gprojt_sub3(s->position + 3 * v[2], s->position + 3 * v[0], b);
+        gprojt_cross3(a, b, c);
+        sum += 0.5 * gprojt_length3(c);
+    }
+    GPROJT_NEAR(sum, gprojt_length3(area), 1e-8 * sum);
+    gproj_surface_destroy(surface);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(s);
+}
+
+GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces, and spirals */
     uint64_t state = 37;
     int round;
     for (round = 0; round < 400; ++round) {
         gprojt_soup s;
-        gproj_mesh *mesh;
-        gproj_surface *surface;
-        int32_t n = 4 + gprojt_below(&state, round % 10 ? 20 : 400), i, t, corner[512];
-        double area[3], sum = 0, tilt = gprojt_uniform(&state);
+        int32_t n = 4 + gprojt_below(&state, round % 10 ? 20 : 400), i, corner[512];
+        double tilt = gprojt_uniform(&state);
         memset(&s, 0, sizeof s);
         for (i = 0; i < n; ++i) {
             double angle = 6.283185307179586 * i / n, r = 0.2 + gprojt_uniform(&state);
             corner[i] = gprojt_add_vertex(&s, r * cos(angle), r * sin(angle), tilt * r * cos(angle));
         }
         gprojt_add_face(&s, n, corner);
-        mesh = gprojt_soup_mesh(&s, NULL, NULL);
-        surface = gproj_surface_create(mesh, NULL, NULL);
-        GPROJT_REQUIRE(surface != NULL);
-        gproj_mesh_face_area_vector(mesh, 0, area);
-        for (t = 0; t < surface->triangle_count; ++t) {
-            const int32_t *v = surface->triangle + 3 * t;
-            double a[3], b[3], c[3];
-            gprojt_sub3(s.position + 3 * v[1], s.position + 3 * v[0], a);
-            gprojt_sub3(s.position + 3 * v[2], s.position + 3 * v[0], b);
-            gprojt_cross3(a, b, c);
-            sum += 0.5 * gprojt_length3(c);
-        }
-        GPROJT_NEAR(sum, gprojt_length3(area), 1e-8 * sum);
-        gproj_surface_destroy(surface);
-        gproj_mesh_destroy(mesh);
-        gprojt_soup_free(&s);
+        gprojt_check_cover(&s);
+    }
+    for (round = 200; round <= 1360; round += 290) {
+        gprojt_soup s;
+        memset(&s, 0, sizeof s);
+        gprojt_add_spiral(&s, round);
+        gprojt_check_cover(&s);
     }
 }
 
@@ -526,13 +537,13 @@ GPROJT_TEST(convex_faces_are_fans) {
     gprojt_soup_free(&s);
 }
 
-GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 60,000 corners each */
+GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 20,000 corners each */
     int kind;
     for (kind = 0; kind < 2; ++kind) {
         gprojt_soup s;
         gproj_mesh *mesh;
         gproj_surface *surface;
-        int32_t i, n = 60000, *corner = (int32_t *)malloc((size_t)n * sizeof(int32_t));
+        int32_t i, n = 20000, *corner = (int32_t *)malloc((size_t)n * sizeof(int32_t));
         static const double p[3] = {0.5, 0.5, 3};
         memset(&s, 0, sizeof s);
         for (i = 0; i < n; ++i) {
