@@ -1568,7 +1568,8 @@ typedef struct gproj_loads {
     const double *edge_density; /* edge_count numbers instead; NULL: `density` for all */
     double area_load;           /* down, per area of each face: an equal part on each corner */
     double snow;                /* down, per area of each face's projection to the ground */
-    const double *point_load;   /* 3 * vertex_count: a force in x, y, z on each vertex (a weight: z < 0); NULL: none */
+    const double *point_load;   /* 3 * vertex_count: a force in x, y, z on each vertex (a weight: z < 0); NULL: none.
+                                   0 on vertices without edges that are no supports */
 } gproj_loads;
 
 /* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
@@ -21271,10 +21272,10 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 
 /* -- making the statics of a form -- */
 
-/* Refuses a second equilibrium, supports that are no list, loads that are no numbers. */
+/* Refuses a second equilibrium, supports that are no list, loads that are no numbers or that nothing carries. */
 GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
                                                  const gproj_supports *supports) {
-    int32_t e, v, count = supports ? supports->count : 0;
+    int32_t e, v, k, count = supports ? supports->count : 0;
     if (form->statics) {
         gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "the form has its equilibrium already: set its schedule, or make a new form");
@@ -21308,6 +21309,16 @@ GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_l
         if (gproji_is_finite(loads->point_load[v])) continue;
         gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
                     "equilibrium: the load on vertex %d is not a finite number", v / 3);
+        return false;
+    }
+    for (v = 0; loads->point_load && v < form->mesh->vertex_count; ++v) {
+        const double *load = loads->point_load + 3 * (size_t)v;
+        if (form->mesh->vertex_halfedge[v] >= 0 || (load[0] == 0 && load[1] == 0 && load[2] == 0)) continue;
+        for (k = 0; k < count && supports->vertex[k] != v; ++k) {
+        }
+        if (k < count) continue;
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
+                    "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
         return false;
     }
     return true;

@@ -1744,7 +1744,7 @@ GPROJT_TEST(equilibrium_on_the_way) {
 
 /* -- borders -- */
 
-/* A square of four quads and two vertices without faces, one of them with a load. */
+/* A square of nine quads and two vertices without faces. */
 GPROJT_TEST(isolated_vertices) {
     gprojt_soup soup = gprojt_quad_grid(3, 3);
     gproj_mesh *mesh;
@@ -1757,7 +1757,7 @@ GPROJT_TEST(isolated_vertices) {
     gprojt_add_vertex(&soup, 6, 5, 5);
     mesh = gprojt_mesh_of(soup);
     GPROJT_REQUIRE(mesh && mesh->isolated_count == 2 && mesh->vertex_count == 18);
-    for (v = 0; v < mesh->vertex_count; ++v) f[3 * v + 2] = v == 16 ? -100 : -1;
+    for (v = 0; v < mesh->vertex_count; ++v) f[3 * v + 2] = v < 16 ? -1 : 0;
     loads.point_load = f, loads.snow = 1, loads.density = 1;
     form = gprojt_pinned_form(mesh, NULL, &loads);
     GPROJT_CHECK(gproj_find_forces(form, NULL, residual, NULL) == GPROJ_OK && residual[16] == 0);
@@ -1920,6 +1920,36 @@ GPROJT_TEST(refusals_of_equilibrium) {
     }
     gproj_mesh_destroy(mesh);
     free(density), free(point);
+}
+
+/* What loads a vertex without edges can balance is nothing, unless it is a support. */
+GPROJT_TEST(loads_that_nothing_carries) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    double *point;
+    int32_t pins[5] = {0, 1, 2, 3, 4}, k;
+    gproj_supports supports = {4, pins, NULL};
+    memset(&soup, 0, sizeof soup);
+    for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, k % 2, k / 2 % 2, 0); /* the last one is alone */
+    gprojt_add_triangle(&soup, 0, 1, 2), gprojt_add_triangle(&soup, 2, 1, 3);
+    mesh = gprojt_soup_mesh(&soup, NULL, NULL);
+    point = gprojt_numbers(3 * mesh->vertex_count);
+    for (k = 0; k < 3; ++k) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads = gprojt_no_loads();
+        memset(point, 0, 15 * sizeof *point);
+        point[14] = k ? -1 : 0, loads.point_load = point, supports.count = k == 1 ? 4 : 5;
+        if (k == 1)
+            gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, 1) == -1, GPROJ_ERROR_ARGUMENT,
+                                 GPROJ_PLACE_VERTEX, 4);
+        else {
+            GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+            gproj_form_destroy(form);
+        }
+    }
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&soup);
+    free(point);
 }
 
 enum {
@@ -2382,6 +2412,7 @@ int main(void) {
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
+    GPROJT_RUN(loads_that_nothing_carries);
     GPROJT_RUN(forces_set_between_frames);
     GPROJT_RUN(forces_refused_between_frames);
     GPROJT_RUN(refused_solves_start_no_forces);

@@ -538,6 +538,52 @@ expect 3 "state" grid.obj -o new.obj --planar --fairness 0.1 --state cut.state
 [ "$(wc -c <cut.state)" -eq 200 ] && pass || fail "a refused state was written over"
 expect 2 "would overwrite" grid.obj -o new.obj --planar --state grid.obj
 
+# In parts by iterations, too; then what is asked for is what was: other bounds, options or files are refused.
+for part in 1 2 3 4 5 6 7 8; do
+    run grid.obj -o part.obj --planar --fairness 0.1 --iterations 3 --state parts.state
+    [ $status -eq 0 ] && break
+    grep -q 'the iterations of this run are done' out.txt || fail "part $part by iterations does not say that it is one"
+done
+[ $part -gt 1 ] && [ $status -eq 0 ] && cmp -s whole.obj part.obj && pass || fail "work in parts of 3 iterations differs ($part)"
+run grid.obj -o part.obj --edge-length 0.5, --planar --time-limit 1e-9 --state asked.state
+run grid.obj -o part.obj --planar --edge-length 0.5, --threads 2 --report part.json --state asked.state
+[ $status -eq 0 ] && pass || fail "another order of options, and outputs, with --state: $(head -n 1 err.txt)"
+run grid.obj -o part.obj --planar --edge-length 0.5, --time-limit 1e-9 --state asked.state
+for other in '--edge-length 0.6,' '--edge-length 0.5, --nearest' '--edge-length 0.5, --tolerance 1e-9'; do
+    expect 3 "with other options or other files" grid.obj -o new.obj --planar $other --state asked.state
+done
+printf '0\n' >one.txt
+run grid.obj -o part.obj --planar --fix one.txt --time-limit 1e-9 --state asked2.state
+printf '0 # the first\n' >one.txt
+expect 3 "with other options or other files" grid.obj -o new.obj --planar --fix one.txt --state asked2.state
+run grid.obj -o part.obj --planar --move 40,0,0,1 --time-limit 1e-9 --state moved.state
+grep -q ' 1 iteration,' out.txt && pass || fail "--time-limit does not end the drag of --move"
+
+# A solve that has not reached its end still leaves its outputs, but for panels that cannot be laid flat.
+rm -f panels.svg part.obj panels.state
+run grid.obj -o part.obj --planar --panels panels.svg --iterations 1 --state panels.state
+[ $status -eq 1 ] && [ -s part.obj ] && [ -s panels.state ] && [ ! -e panels.svg ] && grep -q 'panels.svg is not written: face' err.txt &&
+    pass || fail "panels of an unfinished solve: exits with $status, $(head -n 1 err.txt)"
+run grid.obj -o part.obj --planar --tolerance 0.5 --fairness 0.1 --time-limit 1e-9
+[ $status -eq 0 ] && grep -q 'note: all that must hold holds' out.txt && pass || fail "all holds as the time runs out: $status"
+
+# Only the input may be replaced by the output.
+cp grid.obj other.obj
+expect 2 "would overwrite the input 'other.obj'" grid.obj -o other.obj --planar --glide other.obj
+expect 2 "would overwrite the input 'other.obj'" grid.obj -o other.obj --planar --reference other.obj
+run other.obj -o other.obj --planar --glide other.obj
+[ $status -eq 0 ] && pass || fail "the input is replaced, and glides along itself: $(head -n 1 err.txt)"
+
+# Files of forces and loads say something.
+: >none.csv
+printf '5,0,0\n' >short.csv
+expect 3 "none.csv: no line edge,I,J,W" grid.obj -o new.obj --equilibrium --start-forces none.csv
+expect 3 "grid.obj:1: expected edge,I,J,W" grid.obj -o new.obj --equilibrium --start-forces grid.obj
+(ulimit -f 1 2>/dev/null && "$tool" grid.obj -o large.obj --planar --quiet) >out.txt 2>err.txt
+status=$?
+[ $status -eq 3 ] && grep -q 'large.obj' err.txt && ! ls large.obj ./*.tmp >/dev/null 2>&1 && pass ||
+    fail "a file that grows too large: exits with $status, $(head -n 1 err.txt)"
+
 printf '# corners\n0, 8\n72 80 # the last\n' >corners.txt
 for fix in boundary corners 0,8,72,80 corners.txt 0-8,72=2; do
     run grid.obj -o fixed.obj --planar --fix $fix --iterations 30

@@ -111,6 +111,10 @@ enum {
     OUTPUT_COUNT
 };
 
+enum {
+    ASKED_SIZE = 8 /* bytes behind the library's state: tool.asked, the lowest first */
+};
+
 typedef struct tool {
     /* what the command line says */
     const char *input;
@@ -135,6 +139,8 @@ typedef struct tool {
     int32_t *move_group; /* the group of each move in the form; -1: an earlier move has it */
     int32_t fix_count, glide_count, move_count;
     int32_t iterations, threads;
+    int32_t part;       /* iterations of this run with --state; 0: any number */
+    uint64_t asked;     /* of the options and files that decide about the solve */
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
@@ -692,18 +698,23 @@ static bool set_colour(tool *t, void *place, const char *name, const char *value
 
 /* ---- files ---- */
 
-/* Refuses to write over a file that this run reads. */
-static bool keep_apart(tool *t, const gprojx_output *output, const char *path, size_t size) {
+/* Tells whether an output goes to the file of this name. */
+static bool goes_to(tool *t, const gprojx_output *output, const char *path, size_t size) {
     char *copy = (char *)take(t, size + 1, 1), *real;
     bool same;
     if (!copy) return false;
     memcpy(copy, path, size);
     real = realpath(copy, NULL);
     same = real && !output->device && strcmp(real, output->target) == 0;
-    free(real);
-    if (same) fail(t, EXIT_USAGE, "the output '%s' would overwrite the input '%s'", output->path, copy);
-    free(copy);
-    return !same;
+    free(real), free(copy);
+    return same;
+}
+
+/* Refuses to write over a file that this run reads. */
+static bool keep_apart(tool *t, const gprojx_output *output, const char *path, size_t size) {
+    if (goes_to(t, output, path, size))
+        fail(t, EXIT_USAGE, "the output '%s' would overwrite the input '%.*s'", output->path, (int)size, path);
+    return t->exit_code == 0;
 }
 
 static bool keep_problem_apart(tool *t, const gprojx_output *output) {
@@ -733,16 +744,16 @@ static bool prepare_outputs(tool *t) {
             if (t->output[j].target && strcmp(t->output[j].target, output->target) == 0)
                 return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
         if (!keep_problem_apart(t, output)) return false;
-        if (i != OUTPUT_MESH && !keep_apart(t, output, t->input, strlen(t->input))) return false;
-        for (j = 0; i != OUTPUT_MESH && j < t->fix_count; ++j)
+        /* Only the mesh that comes in may be replaced, by the one that goes out. */
+        if (i == OUTPUT_MESH && goes_to(t, output, t->input, strlen(t->input))) continue;
+        if (!keep_apart(t, output, t->input, strlen(t->input))) return false;
+        for (j = 0; j < t->fix_count; ++j)
             if (!keep_apart(t, output, t->fix[j].text, t->fix[j].length)) return false;
-        for (j = 0; i != OUTPUT_MESH && j < t->glide_count; ++j)
+        for (j = 0; j < t->glide_count; ++j)
             if (!keep_apart(t, output, t->glide[j].text, t->glide[j].length)) return false;
-        if (i != OUTPUT_MESH && t->loads && !keep_apart(t, output, t->loads, strlen(t->loads))) return false;
-        if (i != OUTPUT_MESH && t->supports.text && !keep_apart(t, output, t->supports.text, t->supports.length))
-            return false;
-        if (i != OUTPUT_MESH && t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length))
-            return false;
+        if (t->loads && !keep_apart(t, output, t->loads, strlen(t->loads))) return false;
+        if (t->supports.text && !keep_apart(t, output, t->supports.text, t->supports.length)) return false;
+        if (t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length)) return false;
     }
     return true;
 }
@@ -767,6 +778,16 @@ static char *copy_text(tool *t, const char *text, size_t size) {
 
 static bool is_obj_or_off(const void *bytes, size_t size) { return gprojx_format_of(bytes, size) == GPROJX_NEITHER; }
 
+/* Adds bytes to what is asked for, in any order: a sum of hashes (Fowler, Noll, Vo). */
+static void ask(tool *t, const char *name, const void *bytes, size_t size) {
+    const uint64_t prime = 0x100000001b3u;
+    uint64_t hash = 0xcbf29ce484222325u;
+    for (; *name; ++name) hash = (hash ^ (uint8_t)*name) * prime;
+    hash *= prime;
+    while (size-- > 0) hash = (hash ^ ((const uint8_t *)bytes)[size]) * prime;
+    t->asked += hash;
+}
+
 /* See gprojx_load_file. */
 static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t *length) {
     gproj_error error;
@@ -775,6 +796,7 @@ static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t
     if (!bytes)
         fail(t, EXIT_REFUSED, "%s: %s%s", path, error.message,
              error.code == GPROJ_ERROR_SIZE ? "; --file-limit sets how much is read" : "");
+    if (bytes) ask(t, "", bytes, *length);
     return bytes;
 }
 
@@ -1590,8 +1612,9 @@ static const tool_option options[] = {
     {"lift", "HEIGHT", "the vertex farthest from the boundary is pulled up by HEIGHT, and the mesh follows smoothly",
      set_lift, SETS(lift), .kind = BEGINNING},
     {"state", "FILE",
-     "where FILE exists, the work goes on from there: it was written with the same input and options. At the end the "
-     "state is written to it. With --time-limit or --iterations long work can be done in parts",
+     "where FILE exists, the work goes on from there: it was written with the same input and options, but for "
+     "outputs, --time-limit, --iterations and --threads. At the end the state is written to it. With --time-limit or "
+     "--iterations, then those of this run, long work can be done in parts: exit status 1 until it has ended",
      set_output, SETS(output[OUTPUT_STATE])},
 
     {"planar", "[=W]", "all faces are planar", set_must, PLACE(planar), HARD, SHAPES, .build = gproj_add_planarity,
@@ -1854,9 +1877,18 @@ static bool fail_unknown(tool *t, const char *word, const char *name, size_t siz
                 options[best].name);
 }
 
+/* Tells whether the solve depends on the option in a row: not outputs, nor when it stops. */
+static bool is_for_the_solve(int row) {
+    const tool_option *option = &options[row];
+    if (option->read == set_output) return false;
+    return option->kind != SETTING || option->needs == &statics || option->place == PLACE(nearest) ||
+           option->place == PLACE(plain) || option->place == PLACE(tolerance) || option->place == PLACE(epsilon);
+}
+
 /* Keeps the value (NULL: none) of the option in a row, and sets what it means. */
 static bool give(tool *t, int row, const char *value) {
     const tool_option *option = &options[row];
+    if (is_for_the_solve(row)) ask(t, option->name, value, value ? strlen(value) : 0);
     t->seen[row] = true;
     t->line_of[row] = t->line;
     t->word[t->word_count].row = row;
@@ -1995,8 +2027,12 @@ static bool check_written_problem(tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    int i;
-    if (t->iterations == 0) t->iterations = t->nearest ? 60 : t->plain ? 20 : 200;
+    int32_t usual = t->nearest ? 60 : t->plain ? 20 : 200, i;
+    if (t->output[OUTPUT_STATE].path) { /* the solve has the usual limit, of which this run takes a part */
+        t->part = t->iterations;
+        t->iterations = t->part > usual ? t->part : usual;
+    }
+    if (t->iterations == 0) t->iterations = usual;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
     if (t->fill) t->input = t->fill;
@@ -2216,14 +2252,26 @@ static bool add_option(tool *t, int row) {
     return t->exit_code == 0;
 }
 
-/* Reads the lines edge,I,J,W of a file of --forces; others are passed over. */
+/* Tells whether a line of a file of --forces is about something other than an edge. */
+static bool is_beside_edges(const char *line, size_t size) {
+    static const char *const words[] = {"kind,", "load,", "support,", "#"};
+    size_t i;
+    for (i = 0; i < sizeof words / sizeof words[0]; ++i)
+        if (strncmp(line, words[i], strlen(words[i])) == 0) return true;
+    return strspn(line, " \t") >= size;
+}
+
+/* Reads the lines edge,I,J,W of a file of --forces; edges that it does not name keep their number. */
 static bool read_forces(tool *t, const char *text, double *density) {
     const char *line = text;
-    long number = 1;
+    long number = 1, found = 0;
     for (; *line; ++number) {
         size_t size = strcspn(line, "\r\n");
         double field[3];
         int32_t edge = -1;
+        if (strncmp(line, "edge,", 5) != 0 && !is_beside_edges(line, size))
+            return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W, or a line load,... or support,...",
+                        t->start_forces, number);
         if (strncmp(line, "edge,", 5) == 0) {
             bool good = gprojx_read_fields(line + 5, size - 5, 3, field);
             if (!good) return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W", t->start_forces, number);
@@ -2233,11 +2281,12 @@ static bool read_forces(tool *t, const char *text, double *density) {
                 return fail(t, EXIT_REFUSED, "%s:%ld: there is no edge between the vertices %g and %g", t->start_forces,
                             number, field[0], field[1]);
             density[edge] = field[2];
+            ++found;
         }
         line += strcspn(line, "\n");
         line += *line != 0;
     }
-    return true;
+    return found > 0 || fail(t, EXIT_REFUSED, "%s: no line edge,I,J,W", t->start_forces);
 }
 
 /* Lets the forces start from the number of --start-forces, or from those in this file; edges that it does not name have
@@ -2358,10 +2407,12 @@ static bool measure_forces(tool *t) {
     return gproj_form_error(t->form)->code == GPROJ_OK || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
-/* Tells whether all constraints hold; sentence and report tell how near a nearest mesh came to a minimum. */
+/* Tells whether all constraints hold; sentence and report tell how near a nearest mesh came to a minimum, or that time ran
+   out while wishes guided. With --state it is to go on then. */
 static bool is_exact(const tool *t) {
+    bool enough = t->nearest || (t->result.outcome == GPROJ_TIME_OUT && !t->output[OUTPUT_STATE].path);
     return t->result.outcome == GPROJ_CONVERGED ||
-           (t->nearest && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
+           (enough && t->result.worst_group >= 0 && t->result.residual <= t->result.tolerance);
 }
 
 /* Switches the targets of --move off or on. */
@@ -2388,8 +2439,8 @@ static bool drag_to(tool *t, const gproj_handles *handles, const double *positio
 }
 
 /* Drags the moved vertices to their places, an edge at a time, with a release each. Forces have no tangent space before
-   their first solve: with --equilibrium vertices are not dragged. */
-static bool drag(tool *t) {
+   their first solve: with --equilibrium vertices are not dragged. What the time does not reach is left to the solve. */
+static bool drag(tool *t, double begin) {
     int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, k, count;
     const gproj_handles handles = {.count = t->move_count, .vertex = vertex};
     double *position = (double *)take(t, 3 * (size_t)t->move_count, sizeof *position), farthest = 0;
@@ -2404,7 +2455,7 @@ static bool drag(tool *t) {
     count = (int32_t)fmin(MOST_DRAGS, ceil(farthest / t->before.mean_edge));
     /* Targets would pull at the vertices that the drag leads; they act again in the solve. */
     switch_moves(t, false);
-    for (i = 1; good && i <= count; ++i) {
+    for (i = 1; good && i <= count && (t->time_limit <= 0 || now(NULL) - begin < t->time_limit); ++i) {
         for (k = 0; k < 3 * t->move_count; ++k) {
             const tool_move *move = &t->move[k / 3];
             double from = t->original[3 * (size_t)move->vertex + (size_t)(k % 3)];
@@ -2433,30 +2484,55 @@ static bool pull(tool *t) {
     return true;
 }
 
-/* Goes on from the state in the file of --state, if there is one. */
+/* Tells whether there is a state to go on from. */
+static bool has_state(const tool *t) {
+    return t->output[OUTPUT_STATE].path && access(t->output[OUTPUT_STATE].target, F_OK) == 0;
+}
+
+/* Goes on from the state in the file of --state, if there is one. The library's state has the targets and bounds of then,
+   and how the solve was begun: others are refused. */
 static bool restore(tool *t) {
-    const gprojx_output *state = &t->output[OUTPUT_STATE];
+    const char *path = t->output[OUTPUT_STATE].path;
+    const uint64_t asked = t->asked;
     gproj_error error;
-    size_t size;
-    char *bytes;
-    if (access(state->target, F_OK) != 0) return true;
-    bytes = load_file(t, state->path, NULL, &size);
-    if (bytes && gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK) fail_library(t, state->path, &error);
+    size_t size, k;
+    uint64_t then = 0;
+    uint8_t *bytes;
+    if (!has_state(t)) return true;
+    bytes = (uint8_t *)load_file(t, path, NULL, &size);
+    t->asked = asked; /* the state itself is not asked for */
+    if (!bytes) return false;
+    size -= size < ASKED_SIZE ? size : ASKED_SIZE;
+    for (k = 0; size > 0 && k < ASKED_SIZE; ++k) then |= (uint64_t)bytes[size + k] << (8 * k);
+    if (gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK)
+        fail_library(t, path, &error);
+    else if (then != asked)
+        fail(t, EXIT_REFUSED,
+             "%s: this state was written with other options or other files; only outputs, --time-limit, --iterations "
+             "and --threads may change. Remove it to begin anew",
+             path);
     free(bytes);
     return t->exit_code == 0;
 }
 
 /* Solves from a saved state or from the beginning, an iteration at a time, so that a later run can go on. */
-static bool solve_in_parts(tool *t, const gproj_solve_options *how) {
-    double begin = now(NULL), limit = how->time_budget;
+static bool solve_in_parts(tool *t, const gproj_solve_options *how, double begin) {
+    double limit = how->time_budget;
     gproj_solve_options options = *how;
+    int32_t done = 0;
     options.time_budget = 0;
     gproj_solve_begin(t->form, t->iterations, &options, NULL);
     if (!restore(t)) return false;
     if (!gproj_solve_is_on(t->form)) gproj_solve_begin(t->form, t->iterations, &options, NULL);
     do {
         t->result = gproj_solve_advance(t->form, 0);
-    } while (gproj_solve_is_on(t->form) && (limit <= 0 || now(NULL) - begin < limit));
+    } while (gproj_solve_is_on(t->form) && ++done != t->part && (limit <= 0 || now(NULL) - begin < limit));
+    if (gproj_solve_is_on(t->form) && done == t->part) { /* the library's sentence blames the time */
+        char *message = t->result.message, copy[sizeof t->result.message];
+        const char *rest = strchr(message, ':');
+        snprintf(copy, sizeof copy, "the iterations of this run are done%s", rest ? rest : "");
+        memcpy(message, copy, sizeof copy);
+    }
     return true;
 }
 
@@ -2487,10 +2563,10 @@ static bool solve(tool *t) {
                                      .user = t};
     double begin = now(NULL);
     int32_t i;
-    if (!prepare_records(t) || (dragged && !drag(t))) return false;
+    if (!prepare_records(t) || (dragged && !has_state(t) && !drag(t, begin))) return false;
     if (!t->output[OUTPUT_STATE].path)
         t->result = gproj_solve(t->form, t->iterations, &how);
-    else if (!solve_in_parts(t, &how))
+    else if (!solve_in_parts(t, &how, begin))
         return false;
     if (t->bar) fputc('\n', stderr);
     t->bar = false;
@@ -2520,11 +2596,16 @@ static bool make_offset(tool *t) {
     return t->support || fail_library(t, t->output[OUTPUT_SUPPORT].path, &error);
 }
 
+/* Where the solve has not reached what must hold, panels may be impossible: the other outputs are written all the same. */
 static bool make_panels(tool *t) {
     gproj_error error;
-    if (!t->output[OUTPUT_PANELS].path) return true;
+    const char *path = t->output[OUTPUT_PANELS].path;
+    if (!path) return true;
     t->panels = gprojx_panels_create(t->mesh, t->support, &t->sheet, &error);
-    return t->panels || fail_library(t, t->output[OUTPUT_PANELS].path, &error);
+    if (t->panels || is_exact(t) || error.code == GPROJ_ERROR_MEMORY) return t->panels || fail_library(t, path, &error);
+    fprintf(stderr, "guidedproj: %s is not written: %s\n", path, error.message);
+    t->output[OUTPUT_PANELS].path = t->output[OUTPUT_PANEL_LIST].path = NULL;
+    return true;
 }
 
 /* The largest difference between a distance and the one that was asked for. */
@@ -2694,11 +2775,13 @@ static gproj_code write_panels(tool *t, FILE *file) {
 
 static gproj_code write_panel_list(tool *t, FILE *file) { return gprojx_panels_csv(file, t->panels); }
 
+/* The library's state, and behind it what was asked for. */
 static gproj_code write_state(tool *t, FILE *file) {
-    size_t size = gproj_state_size(t->form);
-    void *bytes = malloc(size ? size : 1);
+    size_t size = gproj_state_size(t->form), k;
+    uint8_t *bytes = (uint8_t *)malloc(size + ASKED_SIZE);
     gproj_code code = bytes ? gproj_state_save(t->form, bytes, size, NULL) : GPROJ_ERROR_MEMORY;
-    if (code == GPROJ_OK && fwrite(bytes, 1, size, file) != size) code = GPROJ_ERROR_FILE;
+    for (k = 0; code == GPROJ_OK && k < ASKED_SIZE; ++k) bytes[size + k] = (uint8_t)(t->asked >> (8 * k));
+    if (code == GPROJ_OK && fwrite(bytes, 1, size + ASKED_SIZE, file) != size + ASKED_SIZE) code = GPROJ_ERROR_FILE;
     free(bytes);
     return code;
 }
@@ -2822,6 +2905,8 @@ static void print_summary(const tool *t) {
     printf("%s\n", t->result.message);
     if (is_exact(t) && verdict_code(t) != EXIT_REACHED)
         puts("note: exit status 1, for the mesh is spoiled; --allow-spoiled accepts it");
+    if (is_exact(t) && t->result.outcome == GPROJ_TIME_OUT)
+        puts("note: all that must hold holds; the time ran out while wishes or closeness guided");
     printf("planarity     %.2e -> %.2e largest, %.2e -> %.2e mean (mean edge lengths)\n", b->planarity_max,
            a->planarity_max, b->planarity_mean, a->planarity_mean);
     if (t->equilibrium.given)

@@ -56,6 +56,7 @@ enum {
 static void gprojx_watch_signals(gprojx_output *list, int32_t count) {
     int i;
     gprojx_watched = list, gprojx_watched_count = count;
+    signal(SIGXFSZ, SIG_IGN); /* a file that grows too large is an error of fwrite */
     for (i = 0; i < GPROJX_ENDING_SIGNALS; ++i)
         if (signal(gprojx_ending_signals[i], SIG_IGN) != SIG_IGN)
             signal(gprojx_ending_signals[i], gprojx_end_by_signal);
