@@ -980,7 +980,8 @@ GPROJ_API int32_t gproj_edit_collapse_edge(gproj_edit *edit, int32_t edge, doubl
    there), and among these the best ones: with the least sum of (a^2 + b^2 + c^2) / area (Klincsek 1980). Faces with
    more than 128 corners lose ears first until 128 are left (Meisters 1975; those with more than 1365 as far as 2048
    looks a corner find them, so that work is linear in the mesh). Refused if each way needs a diagonal that is an edge
-   already. Returns the number of new faces. */
+   already, be it one that a face cut before in this call has got: with -1, faces come in the order of their numbers.
+   Returns the number of new faces. */
 GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_error *error);
 
 /* The strip of an edge (polychord) are the quads that are reached from the edge by going on across the opposite edge,
@@ -989,9 +990,9 @@ GPROJ_API int32_t gproj_edit_triangulate(gproj_edit *edit, int32_t face, gproj_e
 
    Inserts a strip beside the one of an edge: splits all rungs at (1 - t) v_i + t v_j, 0 <= t <= 1, directed like
    half-edge 2 * edge from i to j, and cuts the quads in two, those that belong to it twice in four. Quads stay quads;
-   at the strip's ends triangles are cut in two, and faces with 5 or more corners get one more. Refused if no quad is at
-   the edge, or a closed strip has two quads only. Returns the new part of the edge, from the new vertex to j: a rung of
-   the new strip. */
+   at the strip's ends triangles are cut in two (one that is at both ends into a triangle and a quad), and faces with 5
+   or more corners get one more. Refused if no quad is at the edge, or a closed strip has two quads only. Returns the
+   new part of the edge, from the new vertex to j: a rung of the new strip. */
 GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double t, gproj_error *error);
 
 /* Removes the strip of an edge: collapses all rungs to (1 - t) v_i + t v_j in that direction (Daniels, Silva, Shepherd,
@@ -1236,7 +1237,8 @@ typedef struct gproj_fill_options {
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
     bool keep_points;            /* the curve's points are the boundary vertices, whatever is wanted */
     int32_t rings;               /* rows of quads around along the whole boundary */
-    int32_t variant;             /* 0: the fewest irregular vertices; 1, 2, ..: other cuts, while there are any */
+    int32_t variant;             /* 0: the best pattern in each patch, by irregular vertices and by the width of its
+                                    rows; 1, 2, ..: other patterns, while there are any */
 } gproj_fill_options;
 
 /* Properties of the mesh that was made. */
@@ -1255,10 +1257,11 @@ typedef struct gproj_fill_info {
    the first corner. Corners of the mesh are exactly points of the curve, other boundary vertices are on the segments.
    Counter-clockwise curves give faces that look up. The polylines of the mesh are the sides; a curve with fewer than 2
    corners is given 4 at about equal distances, from its corner or its first point.
-   A corner has one face, or two if it has more than 165 degrees inside or if there are rings. Cuts through the
-   inside end at all corners with more than 195 degrees, and at others if there are more than 6; cuts are chosen
-   short, with good angles, and so that the patches need few irregular vertices. Valence 6 is taken if this leaves
-   nothing better.
+   A corner has one face, or two if it has more than 165 degrees inside, if there are rings, or where only a pattern
+   within a ring fits the numbers (which happens with few edges). Cuts through the inside end at all corners with
+   more than 195 degrees, and at others if there are more than 6; cuts are chosen short, with good angles, and so
+   that the patches need few irregular vertices. Valence 6 is taken if this leaves nothing better, larger ones if
+   that does.
    `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for
    a side: the first one): curves that meet themselves, corners out of order, numbers of edges below 1 or with an odd
    sum (the sentence says how to change them). Also refused: curves that enclose no area, or for which no filling was
@@ -16089,10 +16092,15 @@ GPROJ_API int32_t gproj_edit_insert_strip(gproj_edit *edit, int32_t edge, double
     for (i = 0; !code && i < strip.count; ++i) runs += gproji_polyline_count_runs(s, strip.rung[i]);
     if (!code) code = gproji_edit_reserve(object, 2 * count, 4 * count, 2 * count, runs, error);
     for (i = 0; !code && i <= last; ++i) strip.rung[i] = gproji_edit_split(object, strip.rung[i], t);
-    /* 2. A triangle at an end of the strip is cut from its new corner: as a quad it would lead on. */
+    /* 2. A triangle at an end of the strip is cut from its new corner: as a quad it would lead on; one at both ends is
+       cut from end to end. */
     for (i = 0; !code && !strip.closed && i < 2; ++i) {
-        int32_t end = i == 0 ? s->next[strip.rung[0] ^ 1] : strip.rung[last];
-        if (gproji_edit_sees(s, end, 4)) gproji_edit_cut(object, end, s->next[s->next[end]]);
+        int32_t end[2] = {s->next[strip.rung[0] ^ 1], strip.rung[last]};
+        if (s->face[end[0]] == s->face[end[1]] && gproji_edit_sees(s, end[0], 5)) {
+            gproji_edit_cut(object, end[0], end[1]);
+            break;
+        }
+        if (gproji_edit_sees(s, end[i], 4)) gproji_edit_cut(object, end[i], s->next[s->next[end[i]]]);
     }
     /* 3. Each quad is cut from rung to rung. If the strip has cut it already, from side to side, that cut is split at t
        and met there. */
@@ -16238,7 +16246,9 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     gproji_pool pool;
     gproj_code code;
     int64_t vertices, edges, faces;
-    if (!gproji_given(mesh, "mesh", error)) return NULL;
+    if (!gproji_given(mesh, "mesh", error) ||
+        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+        return NULL;
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
@@ -17231,6 +17241,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                       "faces");
         return NULL;
     }
+    if (gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error) ||
+        gproji_check_positions(mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error))
+        return NULL;
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
         gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the support of %d edges has too many vertices",
                     mesh->edge_count);

@@ -213,7 +213,7 @@ static int32_t gprojt_rungs(const gproj_edit *e, int32_t edge, int32_t *rung) {
 }
 
 /* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a
-   vertex, 4 edges and 3 faces; in a triangle where it ends an edge and a face. Returns how many are crossed twice. */
+   vertex, 4 edges and 3 faces; in a triangle where it ends, also with both ends, an edge and a face. Returns how many are crossed twice. */
 static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t more[3]) {
     int32_t *rung = (int32_t *)malloc((size_t)e->edge_count * sizeof(int32_t)), twice = 0, once = 0, f, k, i;
     int32_t rungs = gprojt_rungs(e, edge, rung);
@@ -222,7 +222,7 @@ static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t mor
         if (h < 0 || e->face_degree[f] > 4) continue;
         for (k = 0; k < e->face_degree[f]; ++k, h = e->next[h])
             for (i = 0; i < rungs; ++i) sides += rung[i] == h / 2;
-        once += e->face_degree[f] == 4 ? sides == 2 : sides == 1;
+        once += sides == 2 || (e->face_degree[f] == 3 && sides == 1);
         twice += sides == 4;
     }
     more[0] = rungs + twice, more[1] = rungs + once + 4 * twice, more[2] = once + 3 * twice;
@@ -686,6 +686,39 @@ static bool gprojt_collapse_quad(gproj_edit *e, int32_t face, int32_t corner) {
 }
 
 /* Where a strip crosses itself quads are cut in four, and all goes back. */
+/* A ring of three quads closed by a triangle, at which the strip begins and ends: it becomes a triangle and a quad, from
+   either side, as often as one likes, and again a triangle. */
+GPROJT_TEST(strips_that_begin_and_end_at_a_triangle) {
+    int side, k;
+    for (side = 0; side < 2; ++side) {
+        static const double p[7][3] = {{1, 0, 0}, {0, 1, 0},   {-1, -1, 0}, {3, 0, 0},
+                                       {0, 3, 0}, {-3, -3, 0}, {3, -2, 0}};
+        static const int32_t quad[3][4] = {{0, 3, 4, 1}, {1, 4, 5, 2}, {2, 5, 6, 0}};
+        gprojt_soup s;
+        gproj_mesh *before, *after;
+        gproj_edit *e;
+        int32_t rung, strip[3], f;
+        memset(&s, 0, sizeof s);
+        for (k = 0; k < 7; ++k) gprojt_add_vertex(&s, p[k][0], p[k][1], p[k][2]);
+        for (k = 0; k < 3; ++k) gprojt_add_face(&s, 4, quad[k]);
+        gprojt_add_triangle(&s, 0, 6, 3);
+        e = gprojt_edit_soup(s);
+        GPROJT_REQUIRE(e != NULL);
+        before = gprojt_edit_mesh(e);
+        rung = gproj_edit_edge(e, 0, 3);
+        for (k = 0; k < 3; ++k) {
+            strip[k] = rung = gproj_edit_insert_strip(e, rung, side ? 0.3 : 0.7, NULL);
+            GPROJT_CHECK(rung >= 0 && e->face_count == 8 + 4 * k);
+            for (f = 0; f < e->face_count; ++f) GPROJT_CHECK(e->face_degree[f] == (f == 3 ? 3 : 4));
+        }
+        while (k-- > 0) GPROJT_CHECK(gproj_edit_remove_strip(e, strip[k], 1, NULL) >= 0);
+        after = gprojt_edit_mesh(e);
+        GPROJT_CHECK(after && gprojt_same_faces(before, after));
+        gproj_mesh_destroy(before), gproj_mesh_destroy(after);
+        gproj_edit_destroy(e);
+    }
+}
+
 GPROJT_TEST(strips_that_cross_themselves) {
     uint64_t state = 11;
     int round, crossed = 0;
@@ -1052,6 +1085,15 @@ GPROJT_TEST(dual_of_the_dual) {
 }
 
 /* At the boundary the dual ends where the mesh does. */
+GPROJT_TEST(the_dual_names_the_vertices_given) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+    gproj_error error;
+    mesh->position[3 * 12 + 1] = NAN;
+    GPROJT_CHECK(!gproj_mesh_dual(mesh, NULL, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 12);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(dual_with_boundary) {
     gprojt_soup s = gprojt_quad_grid(4, 3);
     gproj_mesh *mesh, *dual;
@@ -1401,6 +1443,7 @@ int main(void) {
     GPROJT_RUN(each_edge_by_itself);
     GPROJT_RUN(marks_begin_anew);
     GPROJT_RUN(strips_come_and_go);
+    GPROJT_RUN(strips_that_begin_and_end_at_a_triangle);
     GPROJT_RUN(strips_that_cross_themselves);
     GPROJT_RUN(strips_are_cut_where_asked);
     GPROJT_RUN(polygons_that_are_not_convex);
@@ -1412,6 +1455,7 @@ int main(void) {
     GPROJT_RUN(every_other_ear_is_an_edge);
     GPROJT_RUN(triangles_of_the_largest_size);
     GPROJT_RUN(dual_of_the_dual);
+    GPROJT_RUN(the_dual_names_the_vertices_given);
     GPROJT_RUN(dual_with_boundary);
     GPROJT_RUN(nothing_but_vertices);
     GPROJT_RUN(a_large_mesh_made_small);

@@ -802,7 +802,9 @@ GPROJT_TEST(supports) {
 
 GPROJT_TEST(refusals) {
     gproj_mesh *mesh = gprojt_noisy(GRID, 3, 0.1, 1), *other = gprojt_noisy(TORUS, 3, 0.1, 1);
+    gproj_mesh *offset = gproj_mesh_face_offset(mesh, 0.1, NULL, NULL);
     gproj_error error;
+    GPROJT_REQUIRE(offset != NULL);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(NULL, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(!gproj_mesh_face_offset(NULL, 1, NULL, NULL));
     GPROJT_CHECK(!gproj_mesh_face_offset(mesh, NAN, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
@@ -816,8 +818,13 @@ GPROJT_TEST(refusals) {
     mesh->position[4] = NAN;
     GPROJT_CHECK(!gproj_mesh_face_offset(mesh, 1, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 1);
+    GPROJT_CHECK(!gproj_mesh_support(mesh, offset, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 1); /* the mesh's, not the support's */
+    mesh->position[4] = 0, offset->position[3] = INFINITY;
+    GPROJT_CHECK(!gproj_mesh_support(mesh, offset, NULL, &error) && error.index == 1);
     gproj_mesh_destroy(mesh);
     gproj_mesh_destroy(other);
+    gproj_mesh_destroy(offset);
 }
 
 static bool gprojt_use_offsets(const gproj_host *host, void *user) {
