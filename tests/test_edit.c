@@ -213,7 +213,8 @@ static int32_t gprojt_rungs(const gproj_edit *e, int32_t edge, int32_t *rung) {
 }
 
 /* What inserting a strip adds: a vertex on each rung; in a quad an edge and a face, in one that is crossed twice a
-   vertex, 4 edges and 3 faces; in a triangle where it ends, also with both ends, an edge and a face. Returns how many are crossed twice. */
+   vertex, 4 edges and 3 faces; in a triangle where it ends, also with both ends, an edge and a face. Returns how many are
+   crossed twice. */
 static int32_t gprojt_count_strip(const gproj_edit *e, int32_t edge, int32_t more[3]) {
     int32_t *rung = (int32_t *)malloc((size_t)e->edge_count * sizeof(int32_t)), twice = 0, once = 0, f, k, i;
     int32_t rungs = gprojt_rungs(e, edge, rung);
@@ -1086,8 +1087,10 @@ GPROJT_TEST(dual_of_the_dual) {
 
 /* At the boundary the dual ends where the mesh does. */
 GPROJT_TEST(the_dual_names_the_vertices_given) {
-    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+    gprojt_soup s = gprojt_quad_grid(4, 4);
+    gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL);
     gproj_error error;
+    gprojt_soup_free(&s);
     mesh->position[3 * 12 + 1] = NAN;
     GPROJT_CHECK(!gproj_mesh_dual(mesh, NULL, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == 12);
