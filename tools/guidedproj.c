@@ -410,8 +410,9 @@ static bool set_range(tool *t, void *place, const char *name, const char *value)
     tool_demand *range = (tool_demand *)place;
     range->min = 0, range->max = HUGE_VAL;
     return (read_range(value, range) && range->min >= 0 && range->max > 0) ||
-           fail_value(t, name, value,
-                      "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX, and maybe =W, a weight from 0 to 1e50");
+           fail_value(
+               t, name, value,
+               "MIN,MAX or MIN, or ,MAX with 0 <= MIN <= MAX, MAX above 0, and maybe =W, a weight from 0 to 1e50");
 }
 
 /* Reads bounds of stresses, of either sign. */
@@ -1631,10 +1632,11 @@ static const tool_option options[] = {
      PLACE(edge_length), HARD, SIZES, .add = add_edge_length},
     {"face-area", "MIN,MAX[=W]", "face areas are at least MIN and at most MAX; one may be left out", set_range,
      PLACE(face_area), HARD, SIZES, .add = add_face_area},
-    {"total-area", "A", "the area of all faces is A, or xF: F times the input's", set_total_area, PLACE(total_area),
-     HARD, SIZES, .add = add_total_area},
+    {"total-area", "A", "the area of all faces is A, or xF: F times that of the mesh as the solve begins",
+     set_total_area, PLACE(total_area), HARD, SIZES, .add = add_total_area},
     {"cost", "CL,CA,MAX",
-     "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times the input's",
+     "CL times the length of all edges and CA times the area of all faces cost at most MAX, or xF: F times as much as "
+     "when the solve begins",
      set_cost, PLACE(cost), HARD, SIZES, .add = add_cost},
     {"planar-boundary", "[=W]", "each part of the boundary between corners lies in a plane of its own", set_must, 0,
      HARD, SHAPES, .build = gproj_add_planar_boundary, .of_boundary = true},
@@ -1645,7 +1647,8 @@ static const tool_option options[] = {
     {"lifting", "[=W]", "vertices keep their x and y and move in z only", set_must, 0, HARD, SHAPES,
      .build = gproj_add_lifting},
     {"volume", "V",
-     "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times the input's",
+     "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times that of the mesh as "
+     "the solve begins",
      set_volume, PLACE(volume), HARD, SIZES, .add = add_volume},
     {"fix", "WHICH[=W]",
      "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",

@@ -68,8 +68,11 @@ static bool gprojx_mark_list(const char *text, int32_t vertex_count, bool *mark,
         if (!*at) return true;
         for (k = 0; k < 2; ++k) {
             size_t size = strspn(at, "0123456789");
-            if (size == 0)
-                return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "expected vertices, such as 0,7,20-29, at '%.12s'", at);
+            if (size == 0) {
+                size_t word = strcspn(at, ", \t\r\n");
+                return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "expected vertices, such as 0,7,20-29, at '%.*s'",
+                                     word < 20 ? (int)word : 20, at);
+            }
             if (!gprojx_read_integer(at, size, 0, vertex_count - 1, &range[k]))
                 return gprojx_refuse(error, GPROJ_ERROR_INDEX,
                                      "there is no vertex %.*s; the mesh has %ld, counted from 0", (int)size, at,
