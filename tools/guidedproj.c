@@ -2272,9 +2272,6 @@ static bool read_forces(tool *t, const char *text, double *density) {
         size_t size = strcspn(line, "\r\n");
         double field[3];
         int32_t edge = -1;
-        if (strncmp(line, "edge,", 5) != 0 && !is_beside_edges(line, size))
-            return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W, or a line load,... or support,...",
-                        t->start_forces, number);
         if (strncmp(line, "edge,", 5) == 0) {
             bool good = gprojx_read_fields(line + 5, size - 5, 3, field);
             if (!good) return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W", t->start_forces, number);
@@ -2285,7 +2282,9 @@ static bool read_forces(tool *t, const char *text, double *density) {
                             number, field[0], field[1]);
             density[edge] = field[2];
             ++found;
-        }
+        } else if (!is_beside_edges(line, size))
+            return fail(t, EXIT_REFUSED, "%s:%ld: expected edge,I,J,W, or a line load,... or support,...",
+                        t->start_forces, number);
         line += strcspn(line, "\n");
         line += *line != 0;
     }
