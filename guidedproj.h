@@ -4722,14 +4722,6 @@ GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
     return band->load[v] < band->unit[v + 1] - band->unit[v];
 }
 
-/* Does a unit come to band node v from u? */
-GPROJI_INLINE bool gproji_band_comes_from(const gproji_band *band, int32_t v, int32_t u) {
-    int32_t c;
-    for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-        if (band->origin[c] == u) return true;
-    return false;
-}
-
 /* Appends a state without a level to a queue with `tail` entries; returns the new number. */
 GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
     if (band->level[s] >= 0) return tail;
@@ -4776,9 +4768,11 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
         int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
         if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
             if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c)
-                if (band->level[2 * band->to[c]] < 0 && gproji_band_comes_from(band, band->to[c], v))
-                    tail = gproji_band_rise(band, 2 * band->to[c], level, tail);
+            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c) {
+                int32_t to = band->to[c], end = band->unit[to] + band->load[to];
+                for (k = band->unit[to]; k < end && band->origin[k] != v; ++k) continue;
+                if (k < end) tail = gproji_band_rise(band, 2 * to, level, tail);
+            }
         } else { /* from the own exit, which returns a unit; from all neighbours' exits */
             found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
             if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
@@ -18042,18 +18036,23 @@ typedef struct gproji_cut_line {
     double cost;
 } gproji_cut_line;
 
-/* A patch's outline: `count` entries in f->polygon. */
+/* A patch's outline: `count` entries in f->polygon. The rest is for cuts, see gproji_measure_outline. */
 typedef struct gproji_outline {
     const gproji_filling *f;
     int32_t *entry;
     int32_t count;
-    double edge; /* mean edge length, for cuts */
+    double edge;     /* mean length */
+    double *angle;   /* at each place */
+    int32_t *corner; /* the places of corners, going twice around */
+    int32_t *before; /* 2 * count + 1: corners before each place, going twice around */
+    int32_t *reflex; /* likewise those that are reflex */
 } gproji_outline;
 
 /* The outline from one place in f->polygon to another. */
 GPROJI_INTERNAL gproji_outline gproji_outline_of(const gproji_filling *f, int32_t start, int32_t end) {
     gproji_outline o;
-    o.f = f, o.entry = f->polygon.data + start, o.count = end - start, o.edge = 0;
+    memset(&o, 0, sizeof o);
+    o.f = f, o.entry = f->polygon.data + start, o.count = end - start;
     return o;
 }
 
@@ -18064,28 +18063,46 @@ GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) 
                               gproji_outline_vertex(o, i + o->count - 1));
 }
 
-GPROJI_INTERNAL int32_t gproji_outline_corners(const gproji_outline *o, int32_t from, int32_t to) {
-    int32_t i, n = 0;
-    for (i = from; i < to; ++i) n += o->entry[i % o->count] & 1;
-    return n;
+/* Measures an outline's edges and angles, and counts its corners. False without memory. */
+GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool) {
+    int32_t k, n = o->count;
+    o->angle = (double *)gproji_pool_take(pool, n, sizeof *o->angle);
+    o->corner = gproji_take_ints(pool, 2 * (int64_t)n);
+    o->before = gproji_take_ints(pool, 2 * (int64_t)n + 1);
+    o->reflex = gproji_take_ints(pool, 2 * (int64_t)n + 1);
+    if (pool->failed) return false;
+    o->before[0] = o->reflex[0] = 0;
+    for (k = 0; k < n; ++k) {
+        o->edge += gproji_distance2(o->f->flat, gproji_outline_vertex(o, k), gproji_outline_vertex(o, k + 1)) / n;
+        o->angle[k] = gproji_outline_angle(o, k);
+    }
+    for (k = 0; k < 2 * n; ++k) {
+        bool corner = o->entry[k % n] & 1;
+        if (corner) o->corner[o->before[k]] = k;
+        o->before[k + 1] = o->before[k] + corner;
+        o->reflex[k + 1] = o->reflex[k] + (corner && o->angle[k % n] > GPROJI_REFLEX);
+    }
+    return true;
 }
 
-/* Predicts the cost of the part from place i to place j closed by a cut, whose ends are corners if `first`, `last`. */
+/* Predicts the cost of the part from place i to place j closed by a cut, whose ends are corners if `first`, `last`.
+   `edges` 0: of any number, if the part is cut again; otherwise 0. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
-    int32_t n = gproji_outline_corners(o, i + 1, j) + first + last, k, side = 0, length[GPROJI_PATCH_SIDES] = {0};
-    int32_t strip[GPROJI_PATCH_SIDES], least, off, reflex = 0;
+    int32_t n = o->before[j] - o->before[i + 1] + first + last, reflex = o->reflex[j] - o->reflex[i + 1];
+    int32_t k, side, from = i, off, least, length[GPROJI_PATCH_SIDES] = {0}, strip[GPROJI_PATCH_SIDES];
     /* 1. A part that is cut again: best if the angles allow grids alone, 4 corners and one more for each reflex one. */
-    for (k = i + 1; k < j; ++k) reflex += (o->entry[k % o->count] & 1) && gproji_outline_angle(o, k) > GPROJI_REFLEX;
     if (reflex > 0) return 0.3 * abs(n - 2 * reflex - 4) + 0.1 * reflex;
     if (n > GPROJI_PATCH_SIDES) return 0.6 * (n - GPROJI_PATCH_SIDES + 1);
-    /* 2. A patch, by the lengths it gets; side 0 is before the first corner and after the last. */
-    for (k = i; n >= 2 && k < j; ++k) {
-        side += k == i ? first : o->entry[k % o->count] & 1;
-        ++length[side % n];
+    if (edges == 0) return 0;
+    /* 2. A patch, by the lengths it gets; side 0 is the cut, what is before the first corner, and after the last. */
+    for (side = first, k = o->before[i + 1]; n >= 2 && k <= o->before[j]; ++k, ++side) {
+        int32_t to = k < o->before[j] ? o->corner[k] : j;
+        length[side % n] += to - from;
+        from = to;
     }
-    if (n >= 2) length[(side + last) % n] += edges;
+    if (n >= 2) length[0] += edges;
     least = length[0];
     for (k = 1; k < n; ++k) least = gproji_min(least, length[k]);
     if (n == 4) { /* a grid costs nothing */
@@ -18107,9 +18124,9 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
     bool corner[2][2];
     /* 1. Angles at both ends, in the part from i to j and in the other, best at multiples of a right angle. */
     at[0][0] = gproji_inner_angle(xy, a, gproji_outline_vertex(o, i + 1), b);
-    at[0][1] = gproji_outline_angle(o, i) - at[0][0];
+    at[0][1] = o->angle[i] - at[0][0];
     at[1][0] = gproji_inner_angle(xy, b, a, gproji_outline_vertex(o, j + o->count - 1));
-    at[1][1] = gproji_outline_angle(o, j) - at[1][0];
+    at[1][1] = o->angle[j] - at[1][0];
     for (end = 0; end < 4; ++end) {
         double angle = at[end / 2][end % 2], off;
         if (!(angle > 0.1)) return;
@@ -18120,7 +18137,10 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
     }
     cost += 0.02 * length / o->edge;
     if (a >= o->f->curve_vertices || b >= o->f->curve_vertices) cost += 0.5; /* three patches would meet inside */
-    if (cost >= best->cost) return;
+    if (cost + gproji_part_cost(o, i, j, 0, corner[0][0], corner[1][0]) +
+            gproji_part_cost(o, j, i + o->count, 0, corner[1][1], corner[0][1]) >=
+        best->cost)
+        return;
     /* 2. The cut stays inside, and clear of other vertices. */
     for (k = 0; k < o->count; ++k) {
         int32_t p = gproji_outline_vertex(o, k), q = gproji_outline_vertex(o, k + 1);
@@ -18148,14 +18168,14 @@ GPROJI_INTERNAL void gproji_try_cut(const gproji_outline *o, int32_t i, int32_t 
 /* Finds the best cut from a reflex corner, or from any if there are more than 6; cost infinite: none. */
 GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     gproji_cut_line best = {0, 0, 0, HUGE_VAL};
-    bool many = gproji_outline_corners(o, 0, o->count) > GPROJI_PATCH_SIDES, reflex = false;
+    bool many = o->before[o->count] > GPROJI_PATCH_SIDES, reflex = o->reflex[o->count] > 0;
     int32_t i, j, pass;
-    for (i = 0; i < o->count; ++i) reflex |= (o->entry[i] & 1) && gproji_outline_angle(o, i) > GPROJI_REFLEX;
     if (!reflex && !many) return best;
     for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* other corners only if no reflex one has a cut */
         for (i = 0; i < o->count; ++i) {
-            if (!(o->entry[i] & 1) || (reflex && pass == 0 && gproji_outline_angle(o, i) <= GPROJI_REFLEX)) continue;
-            for (j = 0; j < o->count; ++j) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
+            if (!(o->entry[i] & 1) || (reflex && pass == 0 && o->angle[i] <= GPROJI_REFLEX)) continue;
+            for (j = 0; j < o->count; ++j)
+                if (j != i) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
         }
     return best;
 }
@@ -18185,12 +18205,15 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
     int32_t start, k;
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
         gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
-        gproji_cut_line cut;
+        gproji_cut_line cut = {0, 0, 0, HUGE_VAL};
+        gproji_pool pool;
         int32_t a, b, first = f->vertices;
-        for (k = 0; k < o.count; ++k)
-            o.edge +=
-                gproji_distance2(f->flat, gproji_outline_vertex(&o, k), gproji_outline_vertex(&o, k + 1)) / o.count;
-        cut = gproji_find_cut(&o);
+        bool measured;
+        gproji_pool_start(&pool, f->heap);
+        measured = gproji_measure_outline(&o, &pool);
+        if (measured) cut = gproji_find_cut(&o);
+        gproji_pool_give_all(&pool);
+        if (!measured) return false;
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
@@ -18265,7 +18288,8 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     size_t q;
     bool done;
     /* 1. At most 6 corners, without those that turn least; at least 2, with places between. */
-    for (n = gproji_outline_corners(o, 0, o->count); n > GPROJI_PATCH_SIDES; --n) {
+    for (n = 0, i = 0; i < o->count; ++i) n += o->entry[i] & 1;
+    for (; n > GPROJI_PATCH_SIDES; --n) {
         int32_t flattest = -1;
         for (i = 0; i < o->count; ++i)
             if ((o->entry[i] & 1) && (flattest < 0 || gproji_outline_angle(o, i) > gproji_outline_angle(o, flattest)))
@@ -18601,15 +18625,9 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     return code;
 }
 
-/* Fills the outline in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
-GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
-    int32_t n = f->boundary, ring, start, i, most = 0, *count;
-    size_t at;
-    gproj_code code;
-    f->polygon.count = (size_t)n, f->patch.count = 1, f->patch.data[0] = n;
-    f->quad.count = 0, f->vertices = n;
-    *good = false;
-    /* 1. Rings, near the boundary as yet, and the outline inside them. */
+/* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. False without memory. */
+GPROJI_INTERNAL bool gproji_lay_rings(gproji_filling *f) {
+    int32_t n = f->boundary, ring, i;
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
             int32_t next = (i + 1) % n, before = (i + n - 1) % n, outer = (ring - 1) * n, inner = ring * n;
@@ -18618,24 +18636,33 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
             depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
             if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
                 !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
-                return gproji_fail_memory(f->error);
+                return false;
         }
     f->curve_vertices = f->vertices;
     for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
-    /* 2. All cuts before the first patch: vertices on cuts are numbered before those inside. */
-    if (!gproji_cut_outlines(f)) return gproji_fail_memory(f->error);
+    return true;
+}
+
+/* Fills all outlines in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
+GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence, bool *good) {
+    int32_t start, i, n, most = 0, *count;
+    size_t at;
+    gproj_code code;
+    *good = false;
+    /* 1. Patches, in place of those of the try before. */
+    f->quad.count = 4 * (size_t)f->options.rings * (size_t)f->boundary, f->vertices = f->cut_vertices;
     for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
         gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
         if (o.count > 0 && !gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
-    /* 3. Valences inside, before the work on positions. */
+    /* 2. Valences inside, before the work on positions. */
     count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
     if (!count) return gproji_fail_memory(f->error);
     for (at = 0; at < f->quad.count; ++at)
         if (f->quad.data[at] >= f->boundary) most = gproji_max(most, ++count[f->quad.data[at]]);
     gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
     if (most > valence) return GPROJ_OK;
-    /* 4. Positions: good if all corners turn left. */
+    /* 3. Positions: good if all corners turn left. */
     code = gproji_place_vertices(f);
     n = (int32_t)f->quad.count;
     for (i = 0; i < n; ++i)
@@ -18655,6 +18682,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproj_code code;
     int32_t variant, tries, i;
     bool good = false;
+    double *laid = NULL; /* where cuts and rings begin: each try moves them */
     size_t at;
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
@@ -18670,11 +18698,17 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_count_side_edges(&f);
     if (!code) code = gproji_divide_curve(&f);
-    /* 1. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
+    /* 1. All cuts before the first patch: vertices on cuts are numbered before those inside. */
+    if (!code && !(gproji_lay_rings(&f) && gproji_cut_outlines(&f))) code = gproji_fail_memory(error);
+    if (!code) laid = (double *)gproji_pool_take(&f.pool, 2 * (int64_t)f.cut_vertices, sizeof *laid);
+    if (!code && !laid) code = gproji_fail_memory(error);
+    if (!code) memcpy(laid, f.flat, 2 * (size_t)f.cut_vertices * sizeof *laid);
+    /* 2. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
     variant = f.options.variant;
     for (tries = 0; !code && !good && tries < 3 * GPROJI_FILL_TRIES; ++tries) {
         if (variant > INT32_MAX - tries % GPROJI_FILL_TRIES) continue;
         f.options.variant = variant + tries % GPROJI_FILL_TRIES;
+        memcpy(f.flat, laid, 2 * (size_t)f.cut_vertices * sizeof *laid);
         code = gproji_try_filling(&f, most[tries / GPROJI_FILL_TRIES], &good);
     }
     if (!code && !good)
@@ -18682,7 +18716,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
                            "no filling without a quad turned over was found; divide the sides finer or mark other "
                            "corners");
     if (!code) code = gproji_build_filling(&f, object);
-    /* 2. Properties. */
+    /* 3. Properties. */
     if (!code) found.boundary_count = f.boundary, found.side_count = f.sides;
     for (at = 0; !code && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
     for (i = f.boundary; !code && i < f.vertices; ++i) {

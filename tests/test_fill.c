@@ -62,7 +62,7 @@ static gprojt_curve gprojt_rose(int32_t corners, int32_t points, double bulge) {
 /* A random curve about the origin: kind 0 nearly convex, 1 curved inwards and outwards, 2 wild. It may cross itself. */
 static gprojt_curve gprojt_random_curve(uint64_t *state, int32_t corners, int kind) {
     gprojt_curve c;
-    double x[MOST_CORNERS + 1], y[MOST_CORNERS + 1], begin = 6.28 * gprojt_uniform(state);
+    double x[MOST_CORNERS + 1] = {0}, y[MOST_CORNERS + 1] = {0}, begin = 6.28 * gprojt_uniform(state);
     int32_t i, j, points = 12;
     memset(&c, 0, sizeof c);
     for (i = 0; i < corners; ++i) {
