@@ -532,7 +532,7 @@ run grid.obj -o part.obj --planar --fairness 0.1 --time-limit 1e-9 --state work.
 [ $status -eq 1 ] && [ -s work.state ] && pass || fail "--state with --time-limit exits with $status"
 run grid.obj -o part.obj --planar --fairness 0.1 --state work.state
 [ $status -eq 0 ] && cmp -s whole.obj part.obj && pass || fail "work in parts is not what work at once is"
-expect 3 "another form" grid.obj -o new.obj --planar --state work.state
+expect 3 "was written with --fairness 0.1; only" grid.obj -o new.obj --planar --state work.state
 head -c 200 work.state >cut.state
 expect 3 "state" grid.obj -o new.obj --planar --fairness 0.1 --state cut.state
 [ "$(wc -c <cut.state)" -eq 200 ] && pass || fail "a refused state was written over"
@@ -549,13 +549,18 @@ run grid.obj -o part.obj --edge-length 0.5, --planar --time-limit 1e-9 --state a
 run grid.obj -o part.obj --planar --edge-length 0.5, --threads 2 --report part.json --state asked.state
 [ $status -eq 0 ] && pass || fail "another order of options, and outputs, with --state: $(head -n 1 err.txt)"
 run grid.obj -o part.obj --planar --edge-length 0.5, --time-limit 1e-9 --state asked.state
-for other in '--edge-length 0.6,' '--edge-length 0.5, --nearest' '--edge-length 0.5, --tolerance 1e-9'; do
-    expect 3 "with other options or other files" grid.obj -o new.obj --planar $other --state asked.state
-done
+expect 3 "with --edge-length 0.5,, not --edge-length 0.6,;" grid.obj -o new.obj --planar --edge-length 0.6, --state asked.state
+expect 3 "without --nearest;" grid.obj -o new.obj --planar --edge-length 0.5, --nearest --state asked.state
+expect 3 "without --tolerance 1e-9;" grid.obj -o new.obj --planar --edge-length 0.5, --tolerance 1e-9 --state asked.state
+expect 3 "with --planar, not --planar=2;" grid.obj -o new.obj --planar=2 --edge-length 0.5, --state asked.state
+{ cat grid.obj && echo '# later'; } >other.obj
+expect 3 "before other.obj was changed;" other.obj -o new.obj --planar --edge-length 0.5, --state asked.state
+{ printf 'guidedproj state 1\n' && cat asked.state; } >foreign.state
+expect 3 "no state of this version" grid.obj -o new.obj --planar --edge-length 0.5, --state foreign.state
 printf '0\n' >one.txt
 run grid.obj -o part.obj --planar --fix one.txt --time-limit 1e-9 --state asked2.state
 printf '0 # the first\n' >one.txt
-expect 3 "with other options or other files" grid.obj -o new.obj --planar --fix one.txt --state asked2.state
+expect 3 "before one.txt was changed;" grid.obj -o new.obj --planar --fix one.txt --state asked2.state
 run grid.obj -o part.obj --planar --move 40,0,0,9 --time-limit 1e-9
 awk '/^v / && ++n == 41 { exit !($4 < 5) }' part.obj && pass || fail "--time-limit does not end the drag of --move"
 

@@ -26,6 +26,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "asked.h"
 #include "formats.h"
 #include "outputs.h"
 #include "panels.h"
@@ -111,10 +112,6 @@ enum {
     OUTPUT_COUNT
 };
 
-enum {
-    ASKED_SIZE = 8 /* bytes behind the library's state: tool.asked, the lowest first */
-};
-
 typedef struct tool {
     /* what the command line says */
     const char *input;
@@ -140,7 +137,7 @@ typedef struct tool {
     int32_t fix_count, glide_count, move_count;
     int32_t iterations, threads;
     int32_t part;       /* iterations of this run with --state; 0: any number */
-    uint64_t asked;     /* of the options and files that decide about the solve */
+    gprojx_asked asked; /* the options and files that decide about the solve */
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
     double offset_distance; /* of output[OUTPUT_OFFSET] */
@@ -779,25 +776,23 @@ static char *copy_text(tool *t, const char *text, size_t size) {
 
 static bool is_obj_or_off(const void *bytes, size_t size) { return gprojx_format_of(bytes, size) == GPROJX_NEITHER; }
 
-/* Adds bytes to what is asked for, in any order: a sum of hashes (Fowler, Noll, Vo). */
-static void ask(tool *t, const char *name, const void *bytes, size_t size) {
-    const uint64_t prime = 0x100000001b3u;
-    uint64_t hash = 0xcbf29ce484222325u;
-    for (; *name; ++name) hash = (hash ^ (uint8_t)*name) * prime;
-    hash *= prime;
-    while (size-- > 0) hash = (hash ^ ((const uint8_t *)bytes)[size]) * prime;
-    t->asked += hash;
+/* Passes on an error of gprojx_load_file. */
+static bool fail_file(tool *t, const char *path, const gproj_error *error) {
+    if (error->code == GPROJ_ERROR_MEMORY) return fail_memory(t);
+    return fail(t, EXIT_REFUSED, "%s: %s%s", path, error->message,
+                error->code == GPROJ_ERROR_SIZE ? "; --file-limit sets how much is read" : "");
 }
 
 /* See gprojx_load_file. */
 static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t *length) {
     gproj_error error;
     char *bytes = gprojx_load_file(path, is_text, t->file_limit, length, &error);
-    if (!bytes && error.code == GPROJ_ERROR_MEMORY) fail_memory(t);
-    if (!bytes)
-        fail(t, EXIT_REFUSED, "%s: %s%s", path, error.message,
-             error.code == GPROJ_ERROR_SIZE ? "; --file-limit sets how much is read" : "");
-    if (bytes) ask(t, "", bytes, *length);
+    if (!bytes) fail_file(t, path, &error);
+    if (bytes && !gprojx_asked_add_file(&t->asked, path, bytes, *length)) {
+        fail_memory(t);
+        free(bytes);
+        bytes = NULL;
+    }
     return bytes;
 }
 
@@ -1888,10 +1883,26 @@ static bool is_for_the_solve(int row) {
            option->place == PLACE(plain) || option->place == PLACE(tolerance) || option->place == PLACE(epsilon);
 }
 
+/* Notes an option on which the solve depends, as it was given. */
+static bool ask(tool *t, const tool_option *option, const char *value) {
+    size_t size = strlen(option->name) + (value ? strlen(value) : 0) + 4;
+    char *text = (char *)take(t, size, 1);
+    bool good;
+    if (!text) return false;
+    snprintf(text, size, "--%s%s%s", option->name,
+             !value                    ? ""
+             : option->value[0] == '[' ? "="
+                                       : " ",
+             value ? value : "");
+    good = gprojx_asked_add(&t->asked, text, NULL) || fail_memory(t);
+    free(text);
+    return good;
+}
+
 /* Keeps the value (NULL: none) of the option in a row, and sets what it means. */
 static bool give(tool *t, int row, const char *value) {
     const tool_option *option = &options[row];
-    if (is_for_the_solve(row)) ask(t, option->name, value, value ? strlen(value) : 0);
+    if (is_for_the_solve(row) && !ask(t, option, value)) return false;
     t->seen[row] = true;
     t->line_of[row] = t->line;
     t->word[t->word_count].row = row;
@@ -2495,24 +2506,23 @@ static bool has_state(const tool *t) {
    and how the solve was begun: others are refused. */
 static bool restore(tool *t) {
     const char *path = t->output[OUTPUT_STATE].path;
-    const uint64_t asked = t->asked;
+    char words[1024];
     gproj_error error;
-    size_t size, k;
-    uint64_t then = 0;
+    size_t size, start;
     uint8_t *bytes;
     if (!has_state(t)) return true;
-    bytes = (uint8_t *)load_file(t, path, NULL, &size);
-    t->asked = asked; /* the state itself is not asked for */
-    if (!bytes) return false;
-    size -= size < ASKED_SIZE ? size : ASKED_SIZE;
-    for (k = 0; size > 0 && k < ASKED_SIZE; ++k) then |= (uint64_t)bytes[size + k] << (8 * k);
-    if (gproj_state_restore(t->form, bytes, size, &error) != GPROJ_OK)
-        fail_library(t, path, &error);
-    else if (then != asked)
+    bytes = (uint8_t *)gprojx_load_file(path, NULL, t->file_limit, &size, &error);
+    if (!bytes) return fail_file(t, path, &error);
+    start = gprojx_asked_compare(&t->asked, bytes, size, words, sizeof words);
+    if (start == 0)
+        fail(t, EXIT_REFUSED, "%s: this is no state of this version of guidedproj, or not a whole one", path);
+    else if (words[0])
         fail(t, EXIT_REFUSED,
-             "%s: this state was written with other options or other files; only outputs, --time-limit, --iterations "
-             "and --threads may change. Remove it to begin anew",
-             path);
+             "%s: this state was written %s; only outputs, --time-limit, --iterations and --threads may change. Remove "
+             "it to begin anew",
+             path, words);
+    else if (gproj_state_restore(t->form, bytes + start, size - start, &error) != GPROJ_OK)
+        fail_library(t, path, &error);
     free(bytes);
     return t->exit_code == 0;
 }
@@ -2777,13 +2787,13 @@ static gproj_code write_panels(tool *t, FILE *file) {
 
 static gproj_code write_panel_list(tool *t, FILE *file) { return gprojx_panels_csv(file, t->panels); }
 
-/* The library's state, and behind it what was asked for. */
+/* What was asked for, and behind it the library's state. */
 static gproj_code write_state(tool *t, FILE *file) {
-    size_t size = gproj_state_size(t->form), k;
-    uint8_t *bytes = (uint8_t *)malloc(size + ASKED_SIZE);
+    size_t size = gproj_state_size(t->form);
+    uint8_t *bytes = (uint8_t *)malloc(size);
     gproj_code code = bytes ? gproj_state_save(t->form, bytes, size, NULL) : GPROJ_ERROR_MEMORY;
-    for (k = 0; code == GPROJ_OK && k < ASKED_SIZE; ++k) bytes[size + k] = (uint8_t)(t->asked >> (8 * k));
-    if (code == GPROJ_OK && fwrite(bytes, 1, size + ASKED_SIZE, file) != size + ASKED_SIZE) code = GPROJ_ERROR_FILE;
+    if (code == GPROJ_OK && (!gprojx_asked_write(&t->asked, file) || fwrite(bytes, 1, size, file) != size))
+        code = GPROJ_ERROR_FILE;
     free(bytes);
     return code;
 }
@@ -2974,6 +2984,7 @@ static void clean_up(tool *t) {
     gprojx_history_free(&t->history);
     gprojx_problem_free(&t->problem); /* which texts of options point into */
     free(t->word), free(t->slides);
+    gprojx_asked_free(&t->asked);
 }
 
 int main(int argc, char **argv) {
