@@ -95,6 +95,7 @@ refuses 2 'expected a number larger than 0' vault.obj --young 0
 refuses 2 'expected a whole number from 1 to' vault.obj --divide 0
 refuses 2 'must end in .json' vault.obj --report r.txt
 refuses 2 'there is no vertex 49; the mesh has 49' vault.obj --pinned 0-49
+refuses 2 'give one' vault.obj --scale 2 --mean-edge 1 --pinned boundary
 refuses 2 'nothing loads the frame' vault.obj --density 0
 : >empty.obj
 refuses 3 'empty.obj: the text is empty' empty.obj

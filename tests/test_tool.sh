@@ -281,9 +281,9 @@ expect 3 "bad-range.obj" grid.obj -o old.obj --planar --reference bad-range.obj
 expect 3 "bad-nofaces.obj" grid.obj -o old.obj --planar --glide bad-nofaces.obj
 expect 3 "bad-nofaces.obj" grid.obj -o old.obj --planar --reference bad-nofaces.obj
 printf '1 2 x\n' >words.txt
-expect 3 "words.txt: expected vertices" grid.obj -o old.obj --planar --fix words.txt
+expect 3 "words.txt: line 1: expected vertices" grid.obj -o old.obj --planar --fix words.txt
 printf '1 2 500\n' >far.txt
-expect 3 "far.txt: there is no vertex 500" grid.obj -o old.obj --planar --fix far.txt
+expect 3 "far.txt: line 1: there is no vertex 500" grid.obj -o old.obj --planar --fix far.txt
 run grid.obj -o . --planar # no ending
 [ $status -eq 2 ] && pass || fail "an output without a name"
 
@@ -775,6 +775,11 @@ printf '\357\273\277vertex,fx,fy,fz\r\n40 ,\t0, 0 ,-5\r\n20,1,0,-1\r\n' >marked.
 run vault.obj -o new.obj --equilibrium --density 1 --loads marked.csv --fix boundary --forces forces.csv
 balanced "loads from a spreadsheet" 'edges == 144'
 expect 2 "names no vertex" vault.obj -o new.obj --equilibrium --supports ,
+expect 2 "the mesh has no boundary" closed.obj -o new.obj --equilibrium --supports boundary
+printf '0\n# and\n999\n' >far.txt
+expect 3 "far.txt: line 3: there is no vertex 999" vault.obj -o new.obj --planar --fix far.txt
+printf '0\n1 b\n' >far.txt
+expect 3 "far.txt: line 2: expected vertices" vault.obj -o new.obj --planar --fix far.txt
 
 # ---- offsets ----
 

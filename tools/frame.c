@@ -72,7 +72,7 @@ typedef struct tool {
     const char *section_text;
     gprojx_section section;
     gprojx_material material;
-    double gravity, scale, mean_edge; /* mean_edge: in metres, instead of the scale; 0: the scale is given */
+    double gravity, scale, mean_edge; /* 0: not given; mean_edge: in metres, instead of the scale */
     int32_t pieces;
     tool_support support[MOST_SUPPORTS + 1]; /* up to the first without `which` */
     bool skip_buckling, quiet, help;
@@ -272,6 +272,8 @@ static bool read_command_line(tool *t, int argc, char **argv) {
     }
     if (t->help) return true;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: frame MESH.obj");
+    if (t->scale > 0 && t->mean_edge > 0) return fail(t, EXIT_USAGE, "--scale and --mean-edge say the same: give one");
+    if (t->scale == 0) t->scale = 1;
     if (t->output[OUTPUT_REPORT].path && !gprojx_has_ending(t->output[OUTPUT_REPORT].path, ".json"))
         return fail(t, EXIT_USAGE, "the report '%s' must end in .json", t->output[OUTPUT_REPORT].path);
     if (t->output[OUTPUT_PICTURE].path && !gprojx_has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
@@ -837,7 +839,7 @@ int main(int argc, char **argv) {
     memset(&t, 0, sizeof t);
     t.section = gprojx_section_box(0.1, 0.1, 0.005), t.section_text = "box:0.1,0.1,0.005";
     t.material.young = 210e9, t.material.shear = 81e9, t.material.density = 7850, t.material.yield = 235e6;
-    t.gravity = 9.81, t.scale = 1, t.pieces = 2;
+    t.gravity = 9.81, t.pieces = 2;
     gprojx_watch_signals(t.output, OUTPUT_COUNT);
     if (read_command_line(&t, argc, argv)) {
         if (t.help)

@@ -1492,8 +1492,9 @@ static int32_t add_equilibrium(tool *t, const tool_demand *demand) {
         if (t->slides) supports.slides = slides;
         if (supports.count == 0)
             fail(t, EXIT_USAGE, "%s",
-                 t->supports.text ? "--supports names no vertex"
-                                  : "there is no support: the mesh has no boundary, so name some by --supports");
+                 t->supports.text && t->mesh->loop_count > 0
+                     ? "--supports names no vertex"
+                     : "there is no support: the mesh has no boundary, so name some by --supports");
         else
             group = gproj_add_equilibrium(t->form, &loads, &supports, demand->weight);
     }

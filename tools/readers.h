@@ -59,9 +59,20 @@ static bool gprojx_read_integer(const char *text, size_t size, int32_t low, int3
     return true;
 }
 
+/* The line of a place in a text, as the beginning of a sentence; "" where the text is a single line. */
+static const char *gprojx_line_at(const char *text, const char *at, char words[32]) {
+    long line = 1;
+    words[0] = 0;
+    if (!strchr(text, '\n')) return words;
+    for (; text < at; ++text) line += *text == '\n';
+    snprintf(words, 32, "line %ld: ", line);
+    return words;
+}
+
 /* Marks the vertices of a list I,J,K-L in any layout; comments go from # to the end of the line. */
 static bool gprojx_mark_list(const char *text, int32_t vertex_count, bool *mark, gproj_error *error) {
     const char *at = text;
+    char line[32];
     for (;;) {
         int32_t range[2], k;
         while (*at == ',' || *at == '#' || isspace((unsigned char)*at)) at += *at == '#' ? strcspn(at, "\n") : 1;
@@ -70,20 +81,20 @@ static bool gprojx_mark_list(const char *text, int32_t vertex_count, bool *mark,
             size_t size = strspn(at, "0123456789");
             if (size == 0) {
                 size_t word = strcspn(at, ", \t\r\n");
-                return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "expected vertices, such as 0,7,20-29, at '%.*s'",
-                                     word < 20 ? (int)word : 20, at);
+                return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "%sexpected vertices, such as 0,7,20-29, at '%.*s'",
+                                     gprojx_line_at(text, at, line), word < 20 ? (int)word : 20, at);
             }
             if (!gprojx_read_integer(at, size, 0, vertex_count - 1, &range[k]))
                 return gprojx_refuse(error, GPROJ_ERROR_INDEX,
-                                     "there is no vertex %.*s; the mesh has %ld, counted from 0", (int)size, at,
-                                     (long)vertex_count);
+                                     "%sthere is no vertex %.*s; the mesh has %ld, counted from 0",
+                                     gprojx_line_at(text, at, line), (int)size, at, (long)vertex_count);
             at += size;
             if (k == 0 && *at != '-') range[k = 1] = range[0];
             at += k == 0;
         }
         if (range[1] < range[0])
-            return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "the range %ld-%ld runs backwards", (long)range[0],
-                                 (long)range[1]);
+            return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "%sthe range %ld-%ld runs backwards",
+                                 gprojx_line_at(text, at, line), (long)range[0], (long)range[1]);
         for (k = range[0]; k <= range[1]; ++k) mark[k] = true;
     }
 }
