@@ -423,6 +423,48 @@ const tests = {
         check(await run(() => mesh.faces) > 20 && /^f /m.test(await run(() => new TextDecoder().decode(opened.text))),
             'the curve was not filled');
     },
+    /* Whatever the library reads is shown, also small, and an exception in a picture does not keep others from coming. */
+    async whatever_is_read_is_shown() {
+        const quad = 'v 0 0 0\nv 2 0 0\nv 2 1 1\nv 0 1 0\n', files = {
+            'negative.obj': quad + 'f -4 -3 -2 -1\n',
+            'comment.obj': quad + 'f 1 2 3 4 # a panel\n',
+            'tab.obj': quad.replace(/v /g, 'v\t') + 'f\t1\t2\t3\t4\n',
+            'continued.obj': quad + 'f 1 2 \\\n3 4\n',
+            'indented.obj': quad.replace(/v /g, '  v ') + '  f 1 2 3 4\n',
+            'slashes.obj': quad + 'vt 0 0\nvn 0 0 1\nf 1/1/1 2//1 3/1 4\n',
+            'quad.off': 'OFF\n4 1 4\n0 0 0\n2 0 0\n2 1 1\n0 1 0\n4 0 1 2 3\n',
+        };
+        const drawn = () => until(() => pictured && !dirty && !drawing.busy, 'a picture'), ink = [];
+        await open('#mesh=Roof&planar=1');
+        for (const [name, text] of Object.entries(files)) {
+            fs.writeFileSync(path.join(work, name), text);
+            await run(() => { dirty = true; });
+            await upload(path.join(work, name));
+            await until(name => document.body.dataset.mesh === name && !unseen, name, name);
+            if (!await drawn()) return;
+            ink.push(await run(() => {
+                const canvas = document.getElementById('chosen'), {width, height} = canvas;
+                const {data} = canvas.getContext('2d').getImageData(0, 0, width, height);
+                return data.filter((x, k) => k % 4 === 3 && x).length;
+            }));
+            check(await run(() => mesh.vertices === 4 && mesh.faces === 1 && !location.hash.includes('mesh=')),
+                `${name} is shown as`, await run(() => [mesh.vertices, mesh.faces, location.hash]));
+        }
+        check(ink[0] > 500 && ink.every(n => n === ink[0]), 'of small pictures so many pixels are painted:', ink);
+        await run(() => {
+            window.plain = thumbnail;
+            thumbnail = () => {
+                thumbnail = plain;
+                throw new Error('once');
+            };
+            pictured = false;
+            dirty = true;
+        });
+        await until(() => thumbnail === plain, 'an exception');
+        await run(() => { dirty = true; });
+        await drawn();
+        check((await log('browser')).every(e => /once/.test(e.message)), 'the console says more than the exception');
+    },
     async what_is_no_mesh_is_refused() {
         await choose('Roof');
         const before = await saved(), broken = path.join(work, 'broken.obj'), noise = path.join(work, 'noise.obj');
@@ -432,6 +474,20 @@ const tests = {
         const sentence = await run(() => document.getElementById('sentence').textContent);
         check(/line 5/.test(sentence) && /broken\.obj/.test(sentence), 'a broken file is refused so:', sentence);
         check(await saved() === before, 'a broken file changes the mesh');
+        await run(() => setRule('fairness', 0.2));
+        await until(() => linked, 'the link');
+        check(await run(() => location.hash.includes('mesh=Roof') && item === 'Roof'),
+            'after a broken file the mesh is nameless');
+        await run(() => {
+            const file = (name, text) => new File([new TextEncoder().encode('v 0 0 0\nv 1 0 0\nv 0 1 0\n' + text)], name);
+            document.body.dataset.error = '';
+            openFile(file('good.obj', 'f 1 2 3\n'));
+            openFile(file('wrong.obj', 'f 1 2 4\n'));
+        });
+        await until(() => document.body.dataset.error, 'the refusal of the second of two files');
+        check(await run(() => opened.name === 'good.obj' && mesh.vertices === 3),
+            'a file is called as another one that was refused');
+        await choose('Roof');
         fs.writeFileSync(noise, crypto.randomBytes(50 << 20));
         await run(() => { document.body.dataset.error = ''; });
         await watchTasks(false);
@@ -617,6 +673,40 @@ const tests = {
             check(apart(here, parse(fs.readFileSync(path.join(folder, 'solved.obj'), 'utf8'))) <= near * meanEdge(here),
                 `${hash}: as a command another mesh comes out`);
         }
+    },
+    /* A closed mesh has no boundary to hold, and no supports but vertices that are fixed by hand. */
+    async a_closed_mesh_elsewhere() {
+        const folder = fs.mkdtempSync(path.join(work, 'closed-')), cube = path.join(folder, 'cube.obj');
+        fs.writeFileSync(cube, [0, 1, 2, 3, 4, 5, 6, 7].map(k => `v ${k & 1} ${k >> 1 & 1} ${k >> 2}\n`).join('') +
+            'f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n');
+        await open('#mesh=Roof&planar=1&gliding=1&orthogonal=1&fairness=0.1');
+        await upload(cube);
+        await until(() => document.body.dataset.mesh === 'cube.obj' && marks.length === 8, 'a cube');
+        const elsewhere = async () => {
+            const [command, program, note] = await run(
+                () => [asCommand(), asProgram(), (document.getElementById('as-command').click(),
+                    document.getElementById('dialog').close(), document.getElementById('dialog-note').textContent)]);
+            fs.writeFileSync(path.join(folder, 'solve.c'), program);
+            const read = spawnSync('cc', ['-fsyntax-only', '-pedantic-errors', `-I${root}`, 'solve.c'],
+                {cwd: folder, encoding: 'utf8'});
+            check(read.status === 0 && !read.stderr, 'of a closed mesh as C:', read.stderr);
+            const told = spawnSync(
+                'bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: folder, encoding: 'utf8'});
+            return {command, program, note, told};
+        };
+        const plain = await elsewhere();
+        check(plain.told.status === 0, 'of a closed mesh the command says', plain.told.stderr, plain.command);
+        check(!/boundary/.test(plain.program + plain.command), 'of a closed mesh the boundary is held:', plain.command);
+        await run(() => setRule('equilibrium', 1));
+        const free = await elsewhere(), verdict = await solve();
+        check(/no support/.test(free.told.stderr) && !/--supports/.test(free.command) && /fix some/.test(free.note),
+            'without supports the command is', free.command, free.told.stderr, free.note);
+        check(/no equilibrium/.test(verdict), 'without supports the page says', verdict);
+        await run(() => { for (const vertex of [0, 1, 2, 3]) send({does: 'fix', vertex, on: true}); });
+        await until(() => pins.length === 4, 'fixed vertices');
+        const held = await elsewhere();
+        check(/--supports 0,1,2,3 /.test(held.command) && held.told.status < 2, 'with supports the command is', held.command,
+            held.told.stderr);
     },
     /* 390 px wide, by fingers: one turns the view, two zoom it, one on a vertex drags it. */
     async on_a_phone() {

@@ -5,7 +5,8 @@
 const $ = id => document.getElementById(id);
 
 /* The rules in the order of `rule` in page.c: what the page calls them, how the command line and C do. `most`: a slider
-   gives the weight, or, with `factor`, a factor; wishes have `wish`. */
+   gives the weight, or, with `factor`, a factor; wishes have `wish`; `boundary`: it asks for nothing of a closed mesh,
+   and the command line refuses it there. */
 const rules = [
     {key: 'planar', label: 'Panels are flat', command: '--planar', c: 'gproj_add_planarity(form, 1)'},
     {key: 'circular', label: 'Panels have a circumcircle', command: '--circular', needs: 'planar',
@@ -20,15 +21,15 @@ const rules = [
         excludes: ['tension'], c: 'gproj_add_compression(form, mesh->edge_count, NULL, 1)'},
     {key: 'tension', label: 'Tension only', command: '--tensile', needs: 'equilibrium',
         excludes: ['compression'], c: 'gproj_add_tension(form, mesh->edge_count, NULL, 1)'},
-    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary',
+    {key: 'fixedBoundary', label: 'Boundary stays', command: '--fix boundary', boundary: true,
         excludes: ['gliding', 'fixedCorners'], c: 'gproj_add_fixed_boundary(form, 1)'},
-    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners',
+    {key: 'fixedCorners', label: 'Corners stay', command: '--fix corners', boundary: true,
         excludes: ['fixedBoundary', 'gliding'], c: 'gproj_add_fixed_corners(form, 1)'},
-    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary',
+    {key: 'gliding', label: 'Boundary glides on its curve', command: '--glide boundary', boundary: true,
         excludes: ['fixedBoundary', 'fixedCorners'], c: 'gproj_add_gliding_boundary(form, 1)'},
     {key: 'lifting', label: 'Vertices move in height only', command: '--lifting', c: 'gproj_add_lifting(form, 1)'},
     {key: 'orthogonal', label: 'Right angles at the boundary', command: '--orthogonal-boundary',
-        c: 'gproj_add_orthogonal_boundary(form, 1)'},
+        boundary: true, c: 'gproj_add_orthogonal_boundary(form, 1)'},
     {key: 'volume', label: 'Volume', most: 2, step: 0.05, factor: true, command: '--volume',
         c: 'gproj_add_volume(form, FACTOR * gproj_volume(mesh), 1)'},
     {key: 'longest', label: 'Longest edge', most: 2.5, step: 0.05, factor: true, command: '--edge-length', c:
@@ -61,7 +62,7 @@ const colours = [
 const epsilons = [0, 1e-4, 1e-3, 1e-2, 3e-2, 1e-1]; // 0: it follows the residual
 
 const weights = new Array(rules.length).fill(0);
-let drawing = null, worker = null, item = gallery[0].name, activity = 'starting';
+let drawing = null, worker = null, item = '', activity = 'starting';
 let opened = {name: '', text: ''}; // the mesh as it was opened
 let mesh = null, marks = null, pins = [], selected = -1, hovered = -1, drag = null, saving = null;
 let named = null, marked = null; // what the verdict names, and what of it is marked
@@ -129,16 +130,28 @@ function showCourse(history, busy) {
 /* -- frames -- */
 
 function paint() {
-    if (!linked) writeLink();
+    requestAnimationFrame(paint); // first: an exception below spoils one picture, not all that follow
+    if (!linked && mesh) writeLink();
     if (dirty && !drawing.busy) {
         dirty = false;
         drawing.draw();
         if (drawing.telling === 'bends' && mesh) showGauss();
-    } else if (!pictured && mesh) {
+    } else if (!pictured && mesh?.places) {
         pictured = true;
-        thumbnail($('chosen'), mesh.vertices > 30000 ? '' : new TextDecoder().decode(opened.text));
+        thumbnail($('chosen'), mesh.vertices > 30000 ? {points: [], faces: []} : asOpened());
     }
-    requestAnimationFrame(paint);
+}
+
+/* The mesh as it was opened, for its small picture: as the library has read it, whatever the file's format. */
+function asOpened() {
+    const {corners, places} = mesh, faces = Array.from({length: mesh.faces}, () => []);
+    for (let k = 0; k < corners.length; k += 6) { // a fan: after its first triangle each adds a corner
+        const face = faces[corners[k + 1]];
+        if (!face.length) face.push(corners[k], corners[k + 2]);
+        face.push(corners[k + 4]);
+    }
+    const points = Array.from({length: mesh.vertices}, (_, v) => Array.from(places.subarray(4 * v, 4 * v + 3)));
+    return {points, faces};
 }
 
 /* Bars over the ramp: how many panels, or edges, have which colour. */
@@ -221,11 +234,13 @@ const answers = {
         selected = hovered = -1;
         drawing.setMesh(mesh);
         unseen = true;
-        opened.text = mesh.text;
+        opened = {name: message.name, text: message.text};
+        item = message.item;
+        showItem();
+        showLink();
         $('name').textContent = item || opened.name;
         $('counts').textContent = `${mesh.vertices} vertices, ${mesh.faces} panels`;
         $('counts').title = `${mesh.edges} edges`;
-        pictured = false;
         showCourse([], false);
         say('Nothing has been solved yet.', '');
         document.body.dataset.mesh = opened.name;
@@ -239,7 +254,12 @@ const answers = {
     frame(state) {
         if (state.buffer) {
             drawing.setFrame(state.buffer);
-            if (unseen) unseen = false, Object.assign(drawing.view, {yaw: -1.05, pitch: 0.5}), fit();
+            if (unseen) {
+                unseen = pictured = false;
+                mesh.places = drawing.places.slice();
+                Object.assign(drawing.view, {yaw: -1.05, pitch: 0.5});
+                fit();
+            }
             document.body.dataset.frames = Number(document.body.dataset.frames || 0) + 1;
             dirty = true;
             if (colours[state.tell].key === drawing.telling) showLegend();
@@ -259,7 +279,6 @@ const answers = {
     },
     told(message) { say(message.sentence, ''); },
     error(message) {
-        if (pending) pending = null;
         say(capital(message.sentence), 'bad');
         document.body.dataset.error = message.sentence;
     },
@@ -278,12 +297,10 @@ const answers = {
 /* -- meshes -- */
 
 let memorySize = 0; // of the worker's instance, in bytes
-let pending = null; // what is being opened; it becomes `opened` when it is there
 
-/* source: bytes, which are taken away, or a file, which the worker reads; more: {corners, levels, lift, fix}, see
-   worker.js. */
+/* source: bytes, which are taken away, or a file, which the worker reads; more: {item, corners, levels, lift, fix}, see
+   worker.js. The page keeps its mesh until the worker has read the new one, which may be refused. */
 function open(name, source, preset = null, more = {}) {
-    pending = {name};
     if (preset) setWeights(preset);
     const settings = weights.map((w, k) => [k, w]), file = source instanceof Blob;
     send({does: 'open', source: file ? source : source.buffer, name, settings, ...more}, file ? [] : [source.buffer]);
@@ -292,18 +309,17 @@ function open(name, source, preset = null, more = {}) {
 function openFile(file) {
     if (!file) return;
     if (file.size > 200e6) return say(`${file.name} has more than 200 MB.`, 'bad');
-    item = '';
     open(file.name, file);
 }
 
-/* The points of an OBJ text, and its polygons by numbers from 0, or its first curve. */
+/* The points of an OBJ text of the gallery, and its polygons by numbers from 0, or its first curve. */
 function parse(text) {
     const points = [], faces = [];
     for (const line of text.split('\n')) {
         if (line.startsWith('v ')) points.push(line.slice(2).trim().split(/\s+/).map(Number));
         if (/^[fl] /.test(line)) faces.push(line.slice(2).trim().split(/\s+/).map(w => parseInt(w, 10) - 1));
     }
-    return {points, faces};
+    return {points, faces, curve: /^l /m.test(text)};
 }
 
 /* Opens an item of the gallery, with its rules or others. */
@@ -311,16 +327,14 @@ function choose(name, preset = null) {
     const chosen = gallery.find(g => g.name === name) || gallery[0], text = chosen.make(),
           {corners, levels, lift} = chosen;
     const fix = chosen.fix ? parse(text).points.flatMap((p, v) => chosen.fix(v, p) ? [v] : []) : [];
-    item = chosen.name;
     setColour(chosen.colour || 'planarity');
     open(chosen.name.toLowerCase().replace(/ /g, '_') + '.obj', new TextEncoder().encode(text), preset || chosen.rules,
-        {corners, levels, lift, fix});
+        {item: chosen.name, corners, levels, lift, fix});
 }
 
 async function subdivide() {
     const bytes = await writeMesh();
     if (mesh.faces > 20000) return say('That would be more than a page can show.', 'bad');
-    item = '';
     open(opened.name.replace(/(_fine)*\.\w+$/, '') + '_fine.obj', bytes, null, {levels: 1});
 }
 
@@ -333,8 +347,8 @@ function showItem() {
 
 /* -- small pictures: seen as the mesh is at first, painted from the back -- */
 
-function thumbnail(canvas, text) {
-    const {points, faces} = parse(text), context = canvas.getContext('2d'), {width, height} = canvas;
+function thumbnail(canvas, {points, faces, curve = false}) {
+    const context = canvas.getContext('2d'), {width, height} = canvas;
     context.clearRect(0, 0, width, height);
     if (!points.length) return;
     const seen = points.map(
@@ -349,8 +363,7 @@ function thumbnail(canvas, text) {
         face.forEach((v, k) => context[k ? 'lineTo' : 'moveTo'](...at[v]));
         context.closePath();
     };
-    const [fill, line] = ['--flat', '--line'].map(tone), curve = /^l /m.test(text),
-                 few = Math.sqrt(width * height / Math.max(1, faces.length));
+    const [fill, line] = ['--flat', '--line'].map(tone), few = Math.sqrt(width * height / Math.max(1, faces.length));
     const deep = face => face.reduce((sum, v) => sum + seen[v][2], 0) / face.length;
     context.lineWidth = curve ? 2 : Math.min(1, few / 12);
     context.strokeStyle = curve ? tone('--accent') : line;
@@ -402,7 +415,7 @@ function paintShelf() {
     const button = [...document.querySelectorAll('#gallery button')].find(b => !b.dataset.painted);
     if (!button || !$('shelf').open) return;
     button.dataset.painted = 'yes';
-    thumbnail(button.querySelector('canvas'), gallery.find(g => g.name === button.dataset.name).make());
+    thumbnail(button.querySelector('canvas'), parse(gallery.find(g => g.name === button.dataset.name).make()));
     requestAnimationFrame(paintShelf);
 }
 
@@ -811,6 +824,8 @@ const fixedList = () => pins.filter(pin => !pin[4]).map(pin => pin[0]);
 const movedList = () => pins.filter(pin => pin[4]); // fixed, but elsewhere than in the file
 const isOn = key => weights[index[key]] > 0;
 const isClosed = () => !marks.some(m => m & 1);
+const asked = () => rules.filter((r, k) => weights[k] && r.label && !(r.boundary && isClosed()));
+const unsupported = () => isOn('equilibrium') && isClosed() && pins.length === 0;
 
 /* A file's name as a word of the shell, and as a string in C. */
 const shellWord = name => /^[\w.+-]+$/.test(name) && name[0] !== '-' ? name : `'./${name.replace(/'/g, "'\\''")}'`;
@@ -818,15 +833,14 @@ const cString = name => `"${name.replace(/["\\?]/g, '\\$&')}"`;
 
 function asCommand() {
     const parts = ['tools/guidedproj', shellWord(opened.name), '-o solved.obj'], pinned = fixedList();
-    rules.forEach((r, k) => {
-        const w = weights[k];
-        if (!w || !r.label) return;
+    for (const r of asked()) {
+        const w = weights[index[r.key]];
         if (r.wish) parts.push(r.wish.replace('FILE', shellWord(opened.name)) + w);
         else if (r.key === 'volume') parts.push(`--volume x${w}`);
         else if (r.key === 'longest') parts.push(`--edge-length ,${w * mesh.meanEdge}`);
         else parts.push(r.command);
-    });
-    if (isOn('equilibrium') && isClosed()) parts.push(`--supports ${pins.map(pin => pin[0]).join(',')}`);
+    }
+    if (isOn('equilibrium') && isClosed() && pins.length) parts.push(`--supports ${pins.map(pin => pin[0]).join(',')}`);
     if (pinned.length) parts.push(`--fix ${pinned.join(',')}`);
     for (const [vertex, x, y, z] of movedList()) parts.push(`--move ${vertex},${x},${y},${z}`);
     if (epsilon()) parts.push(`--epsilon ${epsilon()}`);
@@ -853,7 +867,9 @@ function asProgram() {
         '    if (!mesh) return puts(error.message), 1;', '    gproj_form *form = gproj_form_create(mesh, NULL);',
         `    gproj_solve_options options = {.smooth = true${epsilon() ? `, .epsilon = ${epsilon()}` : ''}};`);
     if (surface) out('    gproj_surface *surface = gproj_surface_create(mesh, NULL, &error);');
-    if (supports && isClosed()) {
+    if (unsupported()) {
+        out('    gproj_loads loads = {.area_load = 1};', '    gproj_supports supports = {0, NULL, NULL};');
+    } else if (supports && isClosed()) {
         out('    /* Panels weigh 1 per area; fixed vertices carry. */', '    gproj_loads loads = {.area_load = 1};',
             cArray('int32_t', 'support', pins.map(pin => pin[0])),
             `    gproj_supports supports = {${pins.length}, support, NULL};`);
@@ -868,11 +884,11 @@ function asProgram() {
     if (moved.length)
         out(cArray('int32_t', 'moved', moved.map(pin => pin[0])),
             cArray('double', 'places', moved.flatMap(pin => pin.slice(1, 4))));
-    rules.forEach((r, k) => {
-        if (!weights[k] || !r.c) return;
-        if (r.wish) out(`    gproj_set_schedule(form, ${r.c}, gproj_fade(${weights[k]}, ${supports ? 9 : 6}));`);
-        else out(`    ${r.c.replace('FACTOR', weights[k])};`);
-    });
+    for (const r of asked()) {
+        const w = weights[index[r.key]];
+        if (r.wish) out(`    gproj_set_schedule(form, ${r.c}, gproj_fade(${w}, ${supports ? 9 : 6}));`);
+        else out(`    ${r.c.replace('FACTOR', w)};`);
+    }
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
     out('    gproj_result result = gproj_solve(form, 200, &options);', '    puts(result.message);',
@@ -960,10 +976,10 @@ function makeControls() {
             item ? 'Opens this page with this mesh and these settings; what was pulled is not in it.'
                  : 'Opens this page with these settings; a mesh of your own is not in it.',
             location.href);
-    $('as-c').onclick = () =>
-        show('As C', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asProgram());
-    $('as-command').onclick = () =>
-        show('As a command', `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`, asCommand());
+    const note = () => unsupported() ? 'Nothing carries a closed mesh but vertices that are fixed: fix some first.'
+                                     : `Opens ${opened.name}, the mesh as it was opened here, and solves it so.`;
+    $('as-c').onclick = () => show('As C', note(), asProgram());
+    $('as-command').onclick = () => show('As a command', note(), asCommand());
     $('copy').onclick = copy;
     $('save-opened').onclick = () => download(opened.name, opened.text);
     $('close').onclick = () => $('dialog').close();
@@ -1015,10 +1031,7 @@ async function begin() {
     makeControls();
     drawing = new Drawing($('canvas'));
     worker = workerOf('worker.js');
-    worker.onmessage = ({data}) => {
-        if (data.is === 'mesh' && pending) opened = pending, pending = null, showItem();
-        answers[data.is](data);
-    };
+    worker.onmessage = ({data}) => answers[data.is](data);
     drawing.painter = await startPainter(drawing.canvas);
     const bytes = await unpack();
     send({does: 'start', bytes}, [bytes]);

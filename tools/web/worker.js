@@ -69,7 +69,7 @@ function postVerdict(after) {
 }
 
 /* `text`: the mesh as it was opened, or as OBJ where a curve was filled or a cage subdivided. */
-function postMesh(name, text) {
+function postMesh(name, item, text) {
     const vertices = wasm.page_vertices(), faces = wasm.page_faces(), edges = wasm.page_edges();
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
     const corners = new Uint32Array(wasm.memory.buffer.slice(at, at + 24 * triangles));
@@ -78,6 +78,7 @@ function postMesh(name, text) {
     postMessage({
         is: 'mesh',
         name,
+        item,
         vertices,
         faces,
         edges,
@@ -187,8 +188,8 @@ const does = {
         module = new WebAssembly.Module(bytes);
         instantiate();
     },
-    /* corners, levels, lift: see page_open; fix: the vertices that are fixed. */
-    open({source, name, settings, corners = 0, levels = 0, lift = 0, fix = []}) {
+    /* item: its name in the gallery; corners, levels, lift: see page_open; fix: the vertices that are fixed. */
+    open({source, name, item = '', settings, corners = 0, levels = 0, lift = 0, fix = []}) {
         const text = new Uint8Array(source instanceof Blob ? new FileReaderSync().readAsArrayBuffer(source) : source);
         if (!give(text)) return postMessage({is: 'error', sentence: 'there is not enough memory'});
         if (!wasm.page_open(text.byteLength, corners, levels, lift))
@@ -200,7 +201,7 @@ const does = {
         if (settings) does.set({settings});
         for (const vertex of fix) wasm.page_fix(vertex, true);
         opened.snapshot = snapshot();
-        postMesh(name, opened.text.slice());
+        postMesh(name, item, opened.text.slice());
         postFrame();
     },
     set({settings}) {
