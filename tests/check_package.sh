@@ -61,6 +61,8 @@ target_link_libraries(roof2 PRIVATE guidedproj::guidedproj)
 add_library(whole OBJECT whole.c) # compiled only: that is all of the library once more
 target_link_libraries(whole PRIVATE guidedproj::header)
 set_property(TARGET whole PROPERTY EXCLUDE_FROM_ALL ON)
+add_library(plug SHARED roof.c)
+target_link_libraries(plug PRIVATE guidedproj::guidedproj)
 END
 solves() { # solves WHAT PROGRAM: it makes the roof flat
     (cd "$work/use" && rm -f flat_panels.obj && "$2" >said.txt 2>&1 && [ -s flat_panels.obj ]) && pass ||
@@ -71,6 +73,10 @@ use() { # use WHAT PREFIX: by CMake, and by pkg-config
     quietly "$1: build" cmake --build "$work/use-$1"
     solves "$1, C" "$work/use-$1/roof"
     solves "$1, C++" "$work/use-$1/roof2"
+    use_pkg_config "$1" "$2"
+}
+use_pkg_config() { # use_pkg_config WHAT PREFIX
+    mkdir -p "$work/use-$1"
     if have pkg-config; then
         export PKG_CONFIG_PATH=$2/lib/pkgconfig
         [ -f "$PKG_CONFIG_PATH/guidedproj.pc" ] || PKG_CONFIG_PATH=$(dirname "$(find "$2" -name guidedproj.pc | head -n 1)")
@@ -89,6 +95,16 @@ quietly build cmake --build "$work/build"
 grep -rq -- ' -O2 .*-std=c99\|-std=c99.* -O2' "$work/build/CMakeFiles/guidedproj.dir/flags.make" && pass || fail 'not -O2, C99'
 quietly install cmake --install "$work/build" --prefix "$work/first"
 mv "$work/first" "$work/prefix" # packages are moved
+quietly 'configure, libdir of two parts' cmake -S "$work/source/tools/package" -B "$work/build-two" \
+    -DCMAKE_INSTALL_LIBDIR=lib/of-two
+quietly 'build, libdir of two parts' cmake --build "$work/build-two"
+quietly 'install, libdir of two parts' cmake --install "$work/build-two" --prefix "$work/second"
+mv "$work/second" "$work/two"
+cp "$work/source/guidedproj.h" "$work/kept.h"
+sed 's/^#define GPROJ_VERSION ".*"/#define GPROJ_VERSION "7.89"/' "$work/kept.h" >"$work/source/guidedproj.h"
+quietly 'build of another version' cmake --build "$work/build-two"
+grep -q '^Version: 7\.89$' "$work/build-two/guidedproj.pc" && pass || fail 'a build does not notice a new version'
+mv "$work/kept.h" "$work/source/guidedproj.h"
 mkdir "$work/build-in" && cat >"$work/build-in/CMakeLists.txt" <<END
 cmake_minimum_required(VERSION 3.15)
 project(inside C)
@@ -191,8 +207,9 @@ fi
 
 # ---- all of them, used without the sources ----
 
-rm -rf "$work/source" "$work/build" "$work/vcpkg-build" "$work/conan-source" "$work/conan-build"
+rm -rf "$work/source" "$work/build" "$work/build-two" "$work/vcpkg-build" "$work/conan-source" "$work/conan-build"
 for prefix in prefix vcpkg $([ ! -d "$work/conan" ] || echo conan); do use $prefix "$work/$prefix"; done
+use_pkg_config two "$work/two"
 if have g++; then # the interface target, as far as the compiler sees it
     quietly 'guidedproj::header' make -C "$work/use-prefix" -n whole
 fi
