@@ -240,17 +240,22 @@ def test_lifetimes():
     form.add_reference(guidedproj.Surface(form.mesh), 0.1)
     form.add_gliding(guidedproj.Curve.from_loop(form.mesh), [1, 2, 3])
     system, drag = form.system, form.drag([40])
-    form.mesh.close()
+    closed = form.mesh
+    closed.close()
     gc.collect()
-    check(form.mesh._handle is None and drag.move(np.array([[4, 4, 3.0]])) is None, "a drag without its mesh's object")
+    check(drag.move(np.array([[4, 4, 3.0]])) is None, "a drag without its mesh's object")
+    raises(Error, closed.measure, code=Code.ERROR_STATE, says="this Mesh is closed")
+    check(form.V.shape == (81, 3) and form.mesh is form.mesh and form.mesh is not closed, "a form whose mesh was closed")
     form.close()
     check(system.group_count == 3, "a system without its form's object")
     check(drag.info.handles == 1, "a drag without its form's object")
     check(drag.end().outcome == Outcome.CONVERGED, "the end of a drag without its form's object")
     raises(Error, drag.move, [[0, 0, 0]], code=Code.ERROR_STATE, says="this Drag is closed")
-    for thing in Form(*dome()), Mesh(*dome()):
-        raises((TypeError, pickle.PicklingError, Error), copy.deepcopy, thing)
-        raises((TypeError, pickle.PicklingError, Error), pickle.dumps, thing)
+    form = Form(*dome())
+    for thing in (form, form.mesh, form.system, form.drag([40]), guidedproj.Curve(form.V[:3]), guidedproj.Surface(form.mesh),
+                  guidedproj.Edit(form.mesh), form.mesh.subdivide()[1]):
+        for function in copy.copy, copy.deepcopy, pickle.dumps:
+            raises(TypeError, function, thing, says="not copied or pickled")
     with Form(*dome()) as form:
         form.add_planarity()
     raises(Error, form.solve, code=Code.ERROR_STATE)
@@ -349,6 +354,15 @@ def test_errors():
     raises(Error, Mesh(V, F).save, os.path.join(work, "no", "folder.obj"), code=Code.ERROR_FILE)
     raises(TypeError, Mesh, V, F.astype(float), says="integers are wanted")
     raises(OverflowError, Mesh, V, [[0, 1, 2**40]])
+    raises(ValueError, Mesh, V, F.ravel(), says="lists of corners, or an m x k array")
+    raises(TypeError, Mesh.read, 5)
+    raises(TypeError, Form, Mesh(V, F), F, says="F is for positions")
+    for function, *arguments in ((guidedproj.schedule, 0.1, 1, 2**32 + 3), (Mesh(V, F).subdivide, 2**32 + 1),
+                                 (guidedproj.fill, V[[0, 8, 80, 72]], None, None, 0, False, 2**32), (guidedproj.Host, -1)):
+        raises(OverflowError, function, *arguments, says="does not fit into")
+    check(guidedproj.schedule(0.1, 1, np.int64(3)).last == 3 and guidedproj.Host(2**40)._c.allocator.limit == 2**40, "integers")
+    raises(ValueError, Mesh(V, F).subdivide, sharpness=2.0, says="no creases")
+    raises(ValueError, Form(V, F).add_equilibrium, slides=3, says="no supports")
     raises(ctypes.ArgumentError, Mesh(V, F).valence, 2**33)
     raises(ValueError, Mesh, V[:, :2], F, says="n x 3")
     raises(ValueError, Mesh, ["one", "two"], F)
@@ -467,6 +481,8 @@ def test_callbacks():
     raises(LookupError, system.solve, 20, says="second")
     check(seen == [0, 1], "refreshed in", seen)
     raises(ValueError, system.set_row, group, 0, [1.0, 2.0], 0.0)
+    form = flat_form()
+    raises(ValueError, form.system.set_row, 0, 5, [1.0], 0.0, says="row 5 of group 0 was not added by add_row")
 
 
 def test_refresh_and_systems():
@@ -716,6 +732,72 @@ def test_drag():
     raises(Error, drag.move, [[0, 0, math.nan]], code=Code.ERROR_NUMBER)
     drag.cancel()
     raises(Error, drag.cancel, code=Code.ERROR_STATE)
+    before = form.V.copy()
+    drag = form.drag([40])
+    drag.move([at + [0, 0, 1]])
+    drag.close()
+    drag.close()
+    check((form.V == before).all() and form.drag([40]).info.handles == 1, "a drag that is closed is cancelled")
+
+
+def test_exceptions_in_drags():
+    # Control-C while no line of Python runs, in a release.
+    tick, clock = ctypes.CDLL(os.path.join(work, "tick.so")), guidedproj.Host()
+    clock._c.clock.now = ctypes.cast(tick.now, ctypes.c_void_p)
+    form, count = flat_form(host=clock), ctypes.c_int.in_dll(tick, "ticks")
+    count.value = 100
+    form.solve(20)
+    drag = form.drag([40])
+    drag.move([form.V[40] + [0, 0, 0.5]])
+    count.value = 0
+    raises(KeyboardInterrupt, drag.end)
+    check(drag.result.outcome == Outcome.CANCELLED and drag.result.iterations < 5, drag.result)
+    check(form.solve(20).outcome == Outcome.CONVERGED, "solves on after Control-C in a release")
+
+    # A start function that raises as a drag begins: the form is free at once, though the traceback is kept.
+    form, on, kept = flat_form(), [], []
+    group = form.add_rows("own")
+    first = form.add_unknowns(group, [1.0], start=lambda V, values: on and 1 // 0)
+    form.add_row(group, [(first, -1, 1.0)], -1.0)
+    on.append(1)
+    for begin in lambda: form.drag([40]), lambda: form.solve(3):
+        kept.append(raises(ZeroDivisionError, begin))
+    on.clear()
+    check(form.drag([40]).info.handles == 1, "a drag after one that did not begin")
+    drag = form.drag([40])
+    drag.move([form.V[40] + [0, 0, 0.5]])
+    on.append(1)
+    kept.append(raises(ZeroDivisionError, drag.end))
+    check(drag.result.outcome == Outcome.CANCELLED, "a verdict after an exception:", drag.result)
+    on.clear()
+    check(form.solve(20).outcome == Outcome.CONVERGED, "solves on after an exception in a release")
+
+
+def test_drags_from_callbacks():
+    """What would end a drag while the library works on it is refused."""
+    form, said, box = flat_form(), set(), []
+
+    def refresh(system, group, progress):
+        for drag in box:
+            for name, *arguments in ("cancel",), ("end",), ("close",), ("release",), ("move", [[0, 0, 0]]):
+                try:
+                    getattr(drag, name)(*arguments)
+                except Error as error:
+                    said.add((name, str(error)))
+    group = form.system.add_group("own", refresh=refresh)
+    form.system.add_row(group, [(0, -1, 1.0)], -form.system.values[0])
+    form.solve(20)
+    for work_on in (lambda drag: drag.end(), lambda drag: drag.release() and form.solve_advance(math.inf) and drag.end()):
+        drag = form.drag([40], residual_bound=1e-3)
+        box.append(drag)
+        drag.move([form.V[40] + [0, 0, 2]])
+        check({name for name, _ in said} == {"cancel", "end", "close", "release", "move"}, "while it moves:", said)
+        check(all("under way" in sentence for _, sentence in said), said)
+        said.clear()
+        work_on(drag)
+        check(len(said) == 5 and drag.result.outcome in (Outcome.CONVERGED, Outcome.ITERATION_LIMIT), said, drag.result)
+        said.clear()
+        box.clear()
 
 
 # ---- other meshes ----
@@ -781,6 +863,13 @@ def test_least_squares():
     check(np.allclose(guidedproj.least_squares(Columns, [3.0, 4.0])[0], [1, 1]), "columns")
     Columns.indptr = np.array([0, 1, 300])
     raises(ValueError, guidedproj.least_squares, Columns, [3.0, 4.0], says="compressed columns")
+
+    class Rows:  # csr_matrix, which looks alike where it is square
+        shape, indptr, indices, data, format = (2, 2), np.array([0, 1, 3]), np.array([0, 0, 1]), np.array([2., 1., 4.]), "csr"
+    raises(ValueError, guidedproj.least_squares, Rows, [2.0, 9.0], says="compressed columns")
+    Columns.indptr, Columns.indices, Columns.data = np.array([0, 2, 3]), np.array([0, 1, 1]), np.array([2.0, 1.0, 4.0])
+    Rows.tocsc = staticmethod(lambda: Columns)
+    check(np.allclose(guidedproj.least_squares(Rows, [2.0, 9.0])[0], [1, 2]), "rows are converted")
     raises(Error, guidedproj.least_squares, A, b, lower=2, upper=1, code=Code.ERROR_ARGUMENT)
 
 
@@ -802,8 +891,30 @@ def test_building():
     done = run(module, CC="false", GUIDEDPROJ_CACHE=os.path.join(work, "other"))
     check(done.returncode == 1 and "'false' does not compile guidedproj.h" in done.stderr, done.stderr)
     check(os.listdir(os.path.join(work, "other")) == [], "nothing stays of what failed")
+    done = run(module, CC='gcc "', GUIDEDPROJ_CACHE=os.path.join(work, "other"))
+    check(done.returncode == 1 and "guidedproj: CC is no command" in done.stderr, done.stderr)
+    done = run(module, GUIDEDPROJ_CACHE=os.path.join(ROOF, "below"))
+    check(done.returncode == 1 and "guidedproj: the library cannot be put into" in done.stderr and
+          "GUIDEDPROJ_CACHE may name another" in done.stderr, done.stderr)
+    copies = {"CC": os.path.join(work, "compiler")}
+    named = run(module, "plain.so", **copies).stdout.strip()
+    check(named == os.path.join(os.path.realpath(work), "plain.so") and os.path.isfile(named), named)
+    done = run(module, "--help", **copies)
+    check(done.returncode == 0 and done.stdout.startswith("usage: ") and not os.path.exists(os.path.join(work, "--help")),
+          done.stdout, done.stderr)
+    for wrong in ["--nothing"], ["one.so", "two.so"]:
+        done = run(module, *wrong, **copies)
+        check(done.returncode == 1 and "usage: " in done.stderr and not os.path.exists(os.path.join(work, "one.so")), done.stderr)
     use = f"import sys; sys.path.insert(0, {os.path.dirname(module)!r}); import guidedproj; guidedproj.Mesh([[0, 0, 0]], [])"
     check(run("-c", use, GUIDEDPROJ_LIBRARY=path, **empty).returncode == 0, "a compiled library is taken")
+    copies["GUIDEDPROJ_CACHE"] = os.path.join(work, "cut off")
+    cut = run(module, **copies).stdout.strip()
+    size = os.path.getsize(cut)
+    os.truncate(cut, size // 2)
+    check(run("-c", use, **copies).returncode == 0 and os.path.getsize(cut) == size, "a library that was cut off stays")
+    with open(cut, "wb") as file:
+        file.write(bytes(size))
+    check(run("-c", use, **copies).returncode == 0, "a library that does not load stays")
     done = run("-c", use, GUIDEDPROJ_LIBRARY="nothing.so")
     check("'nothing.so' is no library of guidedproj.h" in done.stderr, done.stderr)
     done = run("-c", use.replace("; guidedproj.Mesh", "; guidedproj.VERSION = '9.9'; guidedproj.Mesh"))

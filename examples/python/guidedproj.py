@@ -12,7 +12,8 @@ The library   is compiled from guidedproj.h (beside this file, or two folders up
     at once and prints the path. GUIDEDPROJ_LIBRARY names a library that is compiled already, with GPROJ_API exported.
 Names         are those of the header without gproj_: gproj_add_planarity(form, 1) is form.add_planarity(1), GPROJ_CONVERGED
     is Outcome.CONVERGED, structs are records with the same fields. Equations, units and sources stand in the header.
-Lists         of vertices, edges or faces: None means all, an empty list none.
+Lists         of vertices, edges or faces: None means all, an empty list none. In the options `supports`,
+    `creases` and `corners` None, or an empty list, stands for the default that each function tells.
 Errors        are raised as guidedproj.Error with the library's sentence, code, place and index. A form keeps its first
     error: make a new one. "Not converged" is a result, no error.
 Callbacks     may raise: the solve is cancelled, and the exception comes out of the call. So does Control-C, after the
@@ -25,6 +26,7 @@ Tried         with CPython 3.11 and numpy 1.24 on Linux.
 import contextlib
 import ctypes
 import functools
+import glob
 import hashlib
 import itertools
 import math
@@ -92,6 +94,18 @@ Unit = _enum("gproj_unit", "Unit", "GPROJ_UNIT_", "NUMBER LENGTH POINT")
 MESSAGE_SIZE, NAME_SIZE, LAST_GUIDING = 512, 32, -1
 
 
+class _Struct(ctypes.Structure):
+    """A struct of the header: refuses integers that do not fit into their fields, which ctypes would cut."""
+
+    def __setattr__(self, name, value):
+        kind = self._kinds.get(name, object)
+        if issubclass(kind, (c_int32, c_int64, c_uint64, c_size_t)):
+            value = operator.index(value)
+            if kind(value).value != value:
+                raise OverflowError(f"{name}: {value} does not fit into {8 * ctypes.sizeof(kind)} bits")
+        super().__setattr__(name, value)
+
+
 def _struct(name, fields):
     """Defines a struct of the header by its fields as in C: 'double min, max; double[3] point'."""
     list_of = []
@@ -100,7 +114,7 @@ def _struct(name, fields):
         base, _, length = kind.rstrip("]").partition("[")
         kind = ctypes.c_char if base == "char" else _TYPES[base]
         list_of += [(field.strip(), kind * int(length) if length else kind) for field in names.split(",")]
-    struct = type(name, (ctypes.Structure,), {"_fields_": list_of})
+    struct = type(name, (_Struct,), {"_fields_": list_of, "_kinds": dict(list_of)})
     STRUCTS[name] = struct
     _TYPES[name.replace("gproj_", "")] = struct
     return struct
@@ -429,50 +443,71 @@ _NOW = ctypes.CFUNCTYPE(c_double, c_void_p)
 # ---- the library -------------------------------------------------------------------------------------------------
 
 
-def build(path=None):
-    """Compiles guidedproj.h into the shared library `path`, or into the cache folder unless it is there; returns the
-    path."""
+def build(path=None, anew=False):
+    """Compiles guidedproj.h into the shared library `path`, or into the cache folder unless it is there; `anew`: also then.
+    Returns the absolute path."""
     here = os.path.dirname(os.path.abspath(__file__))
     headers = [os.path.join(here, "guidedproj.h"), os.path.join(here, "..", "..", "guidedproj.h")]
     header = next((os.path.normpath(name) for name in headers if os.path.isfile(name)), None)
     if not header:
         raise Error(f"there is no guidedproj.h in {here} or two folders up", Code.ERROR_FILE)
-    compiler = shlex.split(os.environ.get("CC", "")) or \
-        next(([name] for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+    try:
+        compiler = shlex.split(os.environ.get("CC", "")) or \
+            next(([name] for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+    except ValueError as problem:
+        raise Error(f"CC is no command, {os.environ['CC']!r}: {problem}", Code.ERROR_FILE) from None
     if not compiler or not shutil.which(compiler[0]):
         raise Error("there is no C compiler to compile guidedproj.h with: install one (Debian: apt-get install gcc "
                     "libc6-dev), name one in CC, or a compiled library in GUIDEDPROJ_LIBRARY", Code.ERROR_FILE)
     export = "__declspec(dllexport)" if os.name == "nt" else '__attribute__((visibility("default")))'
     command = [*compiler, "-std=c99", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-DGUIDEDPROJ_IMPLEMENTATION",
                "-D_POSIX_C_SOURCE=200809L", "-DGPROJ_API=" + export]  # POSIX, for a clock of real time
-    if not path:
+    if path:
+        path, other = os.path.abspath(path), "name another path"
+    else:
+        other = "GUIDEDPROJ_CACHE may name another folder"
         with open(header, "rb") as file:
             system = f"{sys.platform} {platform.machine()} {8 * ctypes.sizeof(c_void_p)}"
             digest = hashlib.sha256(file.read() + "\0".join([*command, system]).encode()).hexdigest()
         folder = os.environ.get("GUIDEDPROJ_CACHE") or os.path.join(
             os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache"), "guidedproj")
-        path = os.path.join(folder, f"guidedproj-{digest[:16]}.so")
-        if os.path.isfile(path):
-            return path
-        print(f"guidedproj: compiling {header} once, to {path}", file=sys.stderr)
-    folder = os.path.dirname(os.path.abspath(path))
-    os.makedirs(folder, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=folder) as work:  # whole or not at all, beside others that do the same
-        made = os.path.join(work, "guidedproj.so")
-        done = subprocess.run([*command, "-x", "c", header, "-o", made, "-lm"], stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-        if done.returncode or not os.path.isfile(made):
-            said = done.stdout.decode("utf-8", "replace").strip()
-            raise Error(f"'{shlex.join(compiler)}' does not compile guidedproj.h: {said[:2000]}", Code.ERROR_FILE)
-        os.replace(made, path)
+        cached = os.path.abspath(os.path.join(folder, f"guidedproj-{digest[:16]}-"))
+        for found in glob.glob(glob.escape(cached) + "*.so"):
+            if found == f"{cached}{os.path.getsize(found)}.so" and not anew:  # one that was cut off would end the process
+                return found
+        print(f"guidedproj: compiling {header} once, into {folder}", file=sys.stderr)
+    folder = os.path.dirname(path or cached)
+    try:
+        os.makedirs(folder, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=folder) as work:  # whole or not at all, beside others that do the same
+            made = os.path.join(work, "guidedproj.so")
+            done = subprocess.run([*command, "-x", "c", header, "-o", made, "-lm"], stdin=subprocess.DEVNULL,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            if done.returncode or not os.path.isfile(made):
+                said = done.stdout.decode("utf-8", "replace").strip()
+                raise Error(f"'{shlex.join(compiler)}' does not compile guidedproj.h: {said[:2000]}", Code.ERROR_FILE)
+            path = path or f"{cached}{os.path.getsize(made)}.so"
+            os.replace(made, path)
+    except OSError as problem:
+        raise Error(f"the library cannot be put into '{folder}': {problem}; {other}", Code.ERROR_FILE) from None
     return path
+
+
+def _load(path):
+    """Loads the library; one in the cache folder that does not load is compiled anew."""
+    try:
+        return ctypes.CDLL(path)
+    except OSError:
+        if os.environ.get("GUIDEDPROJ_LIBRARY"):
+            raise
+        return ctypes.CDLL(build(anew=True))
 
 
 @functools.lru_cache(maxsize=None)
 def _lib():
     path = os.environ.get("GUIDEDPROJ_LIBRARY") or build()
     try:
-        library = ctypes.CDLL(path)
+        library = _load(path)
         version = library.gproj_version()
     except (OSError, AttributeError) as problem:
         raise Error(f"'{path}' is no library of guidedproj.h that exports its functions: {problem}",
@@ -576,6 +611,7 @@ class _Handle:
         self._as_parameter_ = c_void_p(pointer)
         self.destroy, self.needs = destroy, []
         self.keep, self.frames, self.terms = list(keep), None, {}  # callbacks and hosts; a solve's; rows' numbers of terms
+        self.under_way = False  # of a form: a call that moves the mesh, and may call back
         self.users = 1
         for other in needs:
             self.need(other)
@@ -600,13 +636,22 @@ class _Handle:
         if self.users:
             self.drop()
 
-    def __reduce__(self):
-        raise TypeError("an object of the library is not copied or pickled: use mesh.copy(), form.save_state()")
+    @contextlib.contextmanager
+    def calling(self):
+        """Marks a call whose callbacks must not end a drag, which would free what the call uses."""
+        outer, self.under_way = self.under_way, True
+        try:
+            yield
+        finally:
+            self.under_way = outer
 
 
 class _Object:
-    """What all objects have in common: they can be closed."""
+    """What all objects have in common: they can be closed, and not be copied."""
     _handle, _destroy = None, None
+
+    def __reduce__(self):  # copy, deepcopy and pickle ask for it
+        raise TypeError("an object of the library is not copied or pickled: use mesh.copy(), form.save_state()")
 
     @property
     def _c(self):
@@ -632,7 +677,12 @@ class _Object:
     def _own(cls, pointer, error=None, needs=(), keep=()):
         """The handle for a pointer that the library has just returned."""
         handle = _Handle(pointer, getattr(_lib(), cls._destroy), needs, keep) if pointer else None
-        _raise_waiting()
+        try:
+            _raise_waiting()
+        except BaseException:
+            if handle:
+                handle.drop()  # a drag locks its form; the traceback would keep it
+            raise
         if not handle:
             raise _failure(error) if error else Error(code_string(Code.ERROR_MEMORY), Code.ERROR_MEMORY)
         return handle
@@ -688,7 +738,7 @@ class _Sticky(_Object):
 
     def _verdict(self, result):
         """The result of a solve, unless an error ended it."""
-        result = _read(result)
+        result = _read(result)  # a record stays
         if result.outcome == Outcome.FAILED:
             self._check(None)
             raise Error(result.message, Code.ERROR_STATE)
@@ -731,6 +781,8 @@ class Mesh(_Object):
 
     def __init__(self, V, F, host=None):
         V = _doubles(V, (None, 3), "V")
+        if isinstance(F, np.ndarray) and F.ndim == 1 and F.size:
+            raise ValueError("F: lists of corners, or an m x k array, are wanted, not one row of numbers")
         if isinstance(F, np.ndarray) and F.ndim == 2:
             degree = np.full(len(F), F.shape[1], np.int32)
             corner = _integers(F, "F")
@@ -749,7 +801,7 @@ class Mesh(_Object):
     @classmethod
     def read(cls, text, format=Format.DETECT, host=None):
         """Reads OBJ or OFF from a str or bytes (gproj_mesh_read)."""
-        text = text.encode() if isinstance(text, str) else bytes(text)
+        text = text.encode() if isinstance(text, str) else bytes(memoryview(text))
         return cls._make("gproj_mesh_read", ctypes.c_char_p(text), len(text), format, host=host)
 
     def save(self, path):
@@ -901,9 +953,12 @@ class Mesh(_Object):
     def subdivide(self, levels=1, scheme=Scheme.CATMULL_CLARK, creases=None, sharpness=None, corners=None,
                   round_corners=False, stencil_level=0, host=None):
         """The finer mesh and the Stencil that leads to it, fine = stencil.apply(coarse), see >>api-subdivide. `creases`:
-        sharp edges, `sharpness`: one number for each (None: always sharp), `corners`: vertices that stay."""
+        sharp edges (None: none), `sharpness`: one number for each (None: always sharp), `corners`: vertices that stay
+        (None: none)."""
         creases = _integers([] if creases is None else creases, "creases")
         corners = _integers([] if corners is None else corners, "corners")
+        if sharpness is not None and not len(creases):
+            raise ValueError("sharpness: there are no creases that it belongs to")
         sharpness = _beside(sharpness, len(creases), "sharpness")
         options = _SubdivideOptions(scheme=scheme, levels=levels, stencil_level=stencil_level, crease_count=len(creases),
                                     creases=_address(creases), sharpness=_address(sharpness),
@@ -926,7 +981,8 @@ class Mesh(_Object):
 
 
 def fill(points, corners=None, subdivisions=None, edge_length=0, keep_points=False, rings=0, variant=0, host=None):
-    """Fills a closed curve, n x 3 points, with quads: the mesh, and a record of gproj_fill_info, see >>api-fill."""
+    """Fills a closed curve, n x 3 points, with quads: the mesh, and a record of gproj_fill_info, see >>api-fill. `corners`:
+    points (None: it finds them), `subdivisions`: edges of each side (None: by edge_length)."""
     points = _doubles(points, (None, 3), "points")
     corners = _integers([] if corners is None else corners, "corners")
     sides = _integers([] if subdivisions is None else subdivisions, "subdivisions")
@@ -1221,7 +1277,9 @@ class System(_Sticky):
         """Replaces the constant of a row, and the coefficients in the order of its terms (None: as they are; only of
         rows that were added here, because the library does not ask how many there are)."""
         if coefficients is not None:
-            coefficients = _doubles(coefficients, (self._root.terms.get((group, row), -1),), "coefficients").ctypes
+            if (group, row) not in self._root.terms:
+                raise ValueError(f"coefficients: row {row} of group {group} was not added by add_row of a system")
+            coefficients = _doubles(coefficients, (self._root.terms[group, row],), "coefficients").ctypes
         self._check(_lib().gproj_system_set_row(self._c, group, row, coefficients, constant))
 
     def set_row_weight(self, group, row, weight):
@@ -1247,11 +1305,14 @@ class System(_Sticky):
 
 def least_squares(A, b, lower=None, upper=None, damping=0.0, start=None, host=None):
     """Minimises 1/2 |A x - b|^2 + 1/2 damping^2 |x|^2 within bounds, see >>api-least-squares. A: an m x n array, or a
-    matrix by columns as scipy's csc_matrix. Returns x and a record of gproj_least_squares_result."""
+    matrix by columns as scipy's csc_matrix, to which scipy's others are converted. Returns x and a record of
+    gproj_least_squares_result."""
+    if hasattr(A, "tocsc"):
+        A = A.tocsc()
     if all(hasattr(A, name) for name in ("indptr", "indices", "data")):
         rows, columns = A.shape
         begin, row, value = _integers(A.indptr, "A", np.int64), _integers(A.indices, "A"), A.data
-        if len(begin) != columns + 1 or not begin[-1] == len(row) == len(value):
+        if getattr(A, "format", "csc") != "csc" or len(begin) != columns + 1 or not begin[-1] == len(row) == len(value):
             raise ValueError("A: compressed columns are wanted (scipy's csc_matrix)")
     else:
         A = _doubles(A, (None, None), "A")
@@ -1281,6 +1342,8 @@ class Form(_Sticky):
     _destroy, _error = "gproj_form_destroy", "gproj_form_error"
 
     def __init__(self, V, F=None, host=None):
+        if isinstance(V, Mesh) and F is not None:
+            raise TypeError("a form of a mesh has its faces: F is for positions")
         mesh, host = V if isinstance(V, Mesh) else Mesh(V, F, host), host or _default_host()
         self._handle = Form._own(_lib().gproj_form_create(mesh._c, byref(host._c)), needs=[mesh._c], keep=[host])
         self._mesh, self._targets = Mesh._of(mesh._c), {}  # the caller may close `mesh`
@@ -1292,8 +1355,10 @@ class Form(_Sticky):
 
     @property
     def mesh(self):
-        """The Mesh, which outlives the form."""
-        return self._c and self._mesh
+        """The Mesh, which outlives the form; after close() another one of the same memory."""
+        if self._c and self._mesh._handle is None:
+            self._mesh = Mesh._of(self._c.needs[0])
+        return self._mesh
 
     @property
     def V(self):
@@ -1556,7 +1621,7 @@ class Form(_Sticky):
         if iterations is None:
             iterations = 30 if options.get("nearest") else 200 if options.get("smooth") else 20
         options, callback = _solve_options(callback, options)
-        with _interruptible():
+        with self._c.calling(), _interruptible():
             result = _lib().gproj_solve(self._c, iterations, byref(options))
         return self._verdict(result)
 
@@ -1577,7 +1642,7 @@ class Form(_Sticky):
 
     def solve_advance(self, seconds=0.0):
         """Takes the iterations that fit into `seconds`; 0: one, inf: all (gproj_solve_advance)."""
-        with _interruptible():
+        with self._c.calling(), _interruptible():
             result = _lib().gproj_solve_advance(self._c, seconds)
         return self._verdict(result)
 
@@ -1599,13 +1664,16 @@ class Form(_Sticky):
                         supports=None, slides=None):
         """Forces w in the edges balance the loads f: sum_j w_ij (v_i - v_j) + f_i = 0, see >>api-statics.
 
-        Loads as in gproj_loads; `supports`: vertices, `slides`: for each the free axes, sums of 1 (x), 2 (y), 4 (z)."""
+        Loads as in gproj_loads; `supports`: vertices (None: the boundary), `slides`: for each of them the free axes, sums of
+        1 (x), 2 (y), 4 (z)."""
         mesh = self.mesh
         edge_density = _beside(edge_density, mesh.edge_count, "edge_density")
         if point_load is not None:
             point_load = _doubles(point_load, (mesh.vertex_count, 3), "point_load")
         supports = _integers([] if supports is None else supports, "supports")
         if slides is not None:
+            if not len(supports):
+                raise ValueError("slides: there are no supports that they belong to")
             slides = np.ascontiguousarray(np.broadcast_to(_integers(slides, "slides", np.uint8), (len(supports),)))
         loads = _Loads(density=density, edge_density=_address(edge_density), area_load=area_load, snow=snow,
                        point_load=_address(point_load))
@@ -1731,18 +1799,29 @@ class Drag(_Object):
         options, error = _DragOptions(residual_bound=residual_bound, keep_wishes=keep_wishes), _Error()
         pointer = _lib().gproj_drag_begin(Form._as(form), byref(handles), byref(options), byref(error))
         self._handle = Drag._own(pointer, error, needs=[form._c])
-        self._form, self.count, self.result = form, count, None
+        self._form, self._root, self.count, self.result = form, form._c, count, None
+
+    @property
+    def _c(self):
+        if self._root.under_way:
+            raise Error("a call of this Drag or of its form is under way: its callbacks leave the drag alone",
+                        Code.ERROR_STATE)
+        return super()._c
 
     def move(self, positions):
         """Moves the handles to k x 3 positions, and form.V with them (gproj_drag_move)."""
-        positions = _doubles(positions, (self.count, 3), "positions")
-        if _lib().gproj_drag_move(self._c, positions.ctypes) != Code.OK:
-            raise _failure(_Error.from_address(_lib().gproj_drag_error(self._c)))
+        positions, handle = _doubles(positions, (self.count, 3), "positions"), self._c
+        with self._root.calling():
+            code = _lib().gproj_drag_move(handle, positions.ctypes)
+        if code != Code.OK:
+            raise _failure(_Error.from_address(_lib().gproj_drag_error(handle)))
 
     @property
     def residual(self):
         """The largest |phi| of what must hold, on the mesh as it has been dragged."""
-        return _lib().gproj_drag_residual(self._c)
+        handle = self._c
+        with self._root.calling():
+            return _lib().gproj_drag_residual(handle)
 
     @property
     def info(self):
@@ -1756,14 +1835,26 @@ class Drag(_Object):
 
     def release(self):
         """Begins the release in frames: form.solve_advance goes on, end() gives the verdict (gproj_drag_release)."""
-        return _lib().gproj_drag_release(self._c)
+        handle = self._c
+        with self._root.calling():
+            return _lib().gproj_drag_release(handle)
 
     def end(self):
-        """Releases the handles and returns the verdict (gproj_drag_end)."""
-        handle = self._c
-        self._handle, handle.destroy = None, None  # the call destroys it
-        self.result = self._form._verdict(_lib().gproj_drag_end(handle))
-        return self.result
+        """Releases the handles and returns the verdict (gproj_drag_end). Control-C and exceptions of callbacks stop the
+        release after an iteration; `result` has the verdict all the same."""
+        handle, form, library = self._c, self._root, _lib()
+        with form.calling():
+            try:
+                library.gproj_drag_release(handle)
+                with _interruptible():
+                    while library.gproj_solve_is_on(form):
+                        library.gproj_solve_advance(form, 0.0)
+            finally:
+                if library.gproj_solve_is_on(form):
+                    library.gproj_solve_stop(form)
+                self._handle, handle.destroy = None, None  # the next call destroys it
+                self.result = _read(library.gproj_drag_end(handle))
+        return self._form._verdict(self.result)
 
     def cancel(self):
         """Puts the form back to its state before the drag (gproj_drag_cancel)."""
@@ -1772,12 +1863,23 @@ class Drag(_Object):
         _lib().gproj_drag_cancel(handle)
         _raise_waiting()
 
+    def close(self):
+        """Gives the drag up: it is cancelled."""
+        if self._handle is not None:
+            self.cancel()
+
     def __exit__(self, kind, *exception):
         if self._handle is not None:
             self.cancel() if kind else self.end()
 
 
 if __name__ == "__main__":
+    usage = "usage: python3 guidedproj.py [PATH]\nCompiles the library to PATH, or to the cache folder, and prints its path."
+    if sys.argv[1:] in (["-h"], ["--help"]):
+        print(usage)
+        sys.exit()
+    if len(sys.argv) > 2 or sys.argv[1:] and sys.argv[1].startswith("-"):
+        sys.exit(usage)
     try:
         print(build(*sys.argv[1:2]))
     except Error as refusal:
