@@ -136,7 +136,21 @@ thing.scale = (1, 1, 0)
 bpy.context.view_layer.update()
 refused("scaled to nothing")
 new_object(V, F)
-refused("equilibrium needs supports", planar=False, equilibrium=True, boundary="FREE")
+refused("equilibrium needs supports, and the boundary is free", planar=False, equilibrium=True, boundary="FREE")
+kept, sys.modules["guidedproj"] = guidedproj, None  # as if it were not there
+refused("guidedproj.py and guidedproj.h have to be beside the add-on")
+sys.modules["guidedproj"] = kept
+cache, os.environ["GUIDEDPROJ_CACHE"] = os.environ["GUIDEDPROJ_CACHE"], os.path.join(root, "README.md", "below")
+guidedproj._lib.cache_clear()
+refused("GUIDEDPROJ_CACHE may name another folder")
+os.environ["GUIDEDPROJ_CACHE"] = cache
+around = [[r * np.cos(a), r * np.sin(a), 4 - 0.2 * r * r] for r in (1, 2, 3) for a in np.arange(24) * np.pi / 12]
+rings = [[24 * r + k, 24 * r + k + 24, 24 * r + (k + 1) % 24 + 24, 24 * r + (k + 1) % 24] for r in (0, 1) for k in range(24)]
+new_object([[0, 0, 4], *around], [[0, k + 1, (k + 1) % 24 + 1] for k in range(24)] + [[v + 1 for v in face] for face in rings])
+refused("equilibrium needs supports, and the boundary has no corners", planar=False, equilibrium=True, boundary="CORNERS")
+new_object([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)],
+           [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
+refused("equilibrium needs supports, and the mesh has no boundary", planar=False, equilibrium=True, boundary="FIXED")
 bpy.context.view_layer.objects.active = None
 check(not bpy.ops.object.guided_projection.poll(), "nothing to do without a mesh")
 bpy.ops.preferences.addon_disable(module="guidedproj_blender")

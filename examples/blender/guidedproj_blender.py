@@ -4,8 +4,9 @@ their forces, with the options in the panel of the last operation. The whole thi
 Install: Edit > Preferences > Add-ons > Install, this file; and put guidedproj.py (of ../python) and guidedproj.h beside it in
 Blender's add-ons folder. The first use compiles the library and takes a quarter of a minute; see guidedproj.py.
 Use: Object > Guided Projection. Vertices in the vertex group "fixed" stay, those in the group "supports" carry in equilibrium
-(without it: the fixed ones and, unless it is free, the boundary). Blender keeps positions as floats: panels are planar to
-about 1e-7 of the mesh's size."""
+(without it: the fixed ones, and the corners of the boundary where these are fixed, or all of it where it glides or is fixed).
+Blender keeps positions as floats: panels are planar to about 1e-7 of the mesh's size, or of its distance from the object's
+origin where that is larger."""
 import os
 import sys
 
@@ -104,7 +105,10 @@ class OBJECT_OT_guided_projection(bpy.types.Operator):
                 bpy.ops.object.mode_set(mode=mode)
 
     def solve(self, thing):
-        import guidedproj
+        try:
+            import guidedproj
+        except ImportError as problem:
+            return self.refuse(f"guidedproj.py and guidedproj.h have to be beside the add-on, in {_here}: {problem}")
         if thing.data.shape_keys:
             return self.refuse("the mesh has shape keys, which would hide new positions: apply or remove them")
         if abs(thing.matrix_world.determinant()) < 1e-30:
@@ -143,8 +147,10 @@ class OBJECT_OT_guided_projection(bpy.types.Operator):
                 held = {"FREE": lambda v: False, "CORNERS": form.is_corner}.get(self.boundary, form.mesh.is_boundary_vertex)
                 supports = sorted({*fixed, *(v for v in range(form.mesh.vertex_count) if held(v))})
             if not supports:
-                raise ValueError("equilibrium needs supports: a boundary that is not free, or vertices in a vertex group "
-                                 "'fixed' or 'supports'")
+                nothing = "the mesh has no boundary" if form.mesh.loop_count == 0 else \
+                    "the boundary is free" if self.boundary == "FREE" else "the boundary has no corners"
+                raise ValueError(f"equilibrium needs supports, and {nothing}: fix the boundary or let it glide, or put "
+                                 "vertices into a vertex group 'fixed' or 'supports'")
             form.add_equilibrium(area_load=self.load, supports=supports)
             if self.compression:
                 form.add_compression()
