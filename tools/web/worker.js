@@ -105,7 +105,7 @@ function written(off) {
     return bytes(wasm.page_block(0), size).slice();
 }
 /* Has the text no faces, so that quads were made to fill it? */
-const isCurve = text => text.byteLength < 1 << 20 && !/^\s*(f |\S*OFF)/m.test(decoder.decode(text));
+const isCurve = text => text.byteLength < 1 << 20 && !/^\s*(f\s|\S*OFF)/m.test(decoder.decode(text));
 
 /* -- undo -- */
 
