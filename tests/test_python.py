@@ -798,6 +798,22 @@ def test_drags_from_callbacks():
         check(len(said) == 5 and drag.result.outcome in (Outcome.CONVERGED, Outcome.ITERATION_LIMIT), said, drag.result)
         said.clear()
         box.clear()
+    before, seen = form.V.copy(), []
+
+    def forget(system, group, progress):
+        box.clear()
+        seen.append(form.solve_is_on)
+    group = form.system.add_group("other", refresh=forget)
+    form.system.add_row(group, [(0, -1, 1.0)], -form.system.values[0])
+    box.append(form.drag([40]))
+    box[0].move([form.V[40] + [0, 0, 1]])
+    del drag
+    seen.clear()
+    check(box[0].release() and form.solve_is_on, "a release in frames")
+    form.solve_advance()
+    check(seen[0] and not box, "a drag that a callback forgets is cancelled in the middle of a call:", seen)
+    check((form.V == before).all() and not form.solve_is_on, "a drag that a callback forgets is not cancelled")
+    check(form.solve(20).outcome == Outcome.CONVERGED, "solves on after a drag that was forgotten")
 
 
 # ---- other meshes ----

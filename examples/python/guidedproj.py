@@ -612,6 +612,7 @@ class _Handle:
         self.destroy, self.needs = destroy, []
         self.keep, self.frames, self.terms = list(keep), None, {}  # callbacks and hosts; a solve's; rows' numbers of terms
         self.under_way = False  # of a form: a call that moves the mesh, and may call back
+        self.drag = lambda: None  # of a form: a weak reference to the handle of its last drag
         self.users = 1
         for other in needs:
             self.need(other)
@@ -640,8 +641,9 @@ class _Handle:
     def calling(self):
         """Marks a call whose callbacks must not end a drag, which would free what the call uses."""
         outer, self.under_way = self.under_way, True
+        drag = self.drag()  # a drag that nobody has any more is cancelled after the call
         try:
-            yield
+            yield drag
         finally:
             self.under_way = outer
 
@@ -1800,6 +1802,7 @@ class Drag(_Object):
         pointer = _lib().gproj_drag_begin(Form._as(form), byref(handles), byref(options), byref(error))
         self._handle = Drag._own(pointer, error, needs=[form._c])
         self._form, self._root, self.count, self.result = form, form._c, count, None
+        self._root.drag = weakref.ref(self._handle)
 
     @property
     def _c(self):
