@@ -726,8 +726,9 @@ typedef struct gproj_result {
     double residual;    /* largest |phi| over rows that must hold with weight > 0 */
     double tolerance;   /* the bound that the residual was compared with */
     double step;        /* largest |dx| of the last step */
-    /* nearest: norm of the gradient of the wishes' sum w^2 phi^2, projected to the constraints' tangent space, over the
-       norm without projection: 0 at a minimum, 1 if nothing has been gained. Else 0. */
+    /* nearest: how far grad E + sum y grad phi = 0, the condition of a minimum, is from holding with the multipliers y
+       that were found: the norm of the left side over that of the gradients in grad E, row by row. At most 1e-6 near a
+       minimum; far from one it may be large, and says no more than that. Else 0. */
     double optimality;
     int32_t worst_group; /* the group with that residual; -1 if nothing must hold */
     int32_t worst_element;
@@ -1368,7 +1369,8 @@ GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight);
    iteration: (V(v) - volume) / (area of the mesh). See gproj_volume. */
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight);
 /* The face areas |a_k| (vectorial areas) sum to `area`, in the mesh's units squared. One global row, linearised in each
-   iteration. Like all rows below it is measured in mean edge lengths, here by the side of a square with this area. */
+   iteration. Like all rows below it is measured in mean edge lengths, here by the side of a square with the area that
+   the mesh has when this is called. */
 GPROJ_API int32_t gproj_add_total_area(gproj_form *form, double area, double weight);
 /* length_price * (length of all edges) + area_price * (area of all faces) = cost. Prices per unit of the mesh's lengths
    and areas, >= 0 and not both 0. One global row, as above. (1, 0) prescribes the length of all edges. */
@@ -1547,9 +1549,9 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
    matrix, which the solve need not repeat, but takes neither the factor nor the arrays of iterations. The peak is
    normally 0.7 to 1 of this number, which is the sum for the rows as they are, with 1/32 more for small work, or with
    1/4 more for rows that come in on the way (of the guard where steps are found by multipliers, of corners in smooth
-   solves); compression that shapes resist has been seen to take 1.2, and nearest meshes that get safeguards 1.7. The
-   mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no solve is on, a callback asks,
-   no memory for the analysis. */
+   solves); compression that shapes resist and smooth solves of small meshes have been seen to take 1.2, nearest meshes
+   that get safeguards 1.7. The mesh, curves and surfaces of yours are not in it. 0 after an error (NULL: not told): no
+   solve is on, a callback asks, no memory for the analysis. */
 GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error);
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form);
 GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds);
@@ -1622,7 +1624,7 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
 /* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
    numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
    gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
-   unbalanced force at each vertex, over the mean load. Changes nothing. */
+   unbalanced force at each vertex, over the mean load of those that are not held. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error);
 /* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
    gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
@@ -1634,10 +1636,10 @@ GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacement
 typedef struct gproj_forces {
     double residual; /* largest |sum_j w_ij (v_i - v_j) + f_i| over vertices without support, over the largest |f_i| */
     int32_t residual_vertex;
-    double min_density, max_density;
-    double min_force, max_force; /* w l: > 0 compression */
-    double load_path;            /* sum of |w| l^2 */
-    double total_load;           /* sum of the loads' downward parts */
+    double min_density, max_density; /* edges between supports that are held are left out, here and below */
+    double min_force, max_force;     /* w l: > 0 compression */
+    double load_path;                /* sum of |w| l^2 */
+    double total_load;               /* sum of the loads' downward parts */
     double max_reaction;
 } gproj_forces;
 
@@ -1683,10 +1685,12 @@ typedef struct gproj_handles {
 typedef struct gproj_drag_options {
     /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
        anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
-       more than a mean edge length for it. For long drags. A move then costs an evaluation of all rows, and now and
-       then as much as gproj_drag_begin. 0 or INFINITY: never. */
-    double residual_bound; /* after a large jump the residual comes down over the next moves, also to the same place */
-    bool keep_wishes;      /* at the release the form's own wishes guide, too */
+       more than a mean edge length for it. For long drags. Where following the handles all the way would leave a
+       residual above 1, or one that grows in spite of that step, they stay behind (gproj_drag_info), and follow in the
+       next moves, also to the same place. A move then costs an evaluation of all rows, and now and then as much as
+       gproj_drag_begin. 0 or INFINITY: never. */
+    double residual_bound;
+    bool keep_wishes; /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
 
 /* The state of a drag. */
@@ -10395,6 +10399,7 @@ static const double gproji_bound_slack = 0.1;
 static const double gproji_bend_below = 0.9, gproji_bend_most = 0.6;
 /* A step that lowers the merit to this part need not be found again for lazy bounds. */
 static const double gproji_bound_enough = 0.1;
+static const double gproji_bound_descent = 0.01; /* the least slope, by the merit, where switching goes in circles */
 /* The stiffness of steps: bounds, and the merit below which it may become 0. */
 static const double gproji_stiffness_least = 0.01, gproji_stiffness_most = 30, gproji_stiffness_rest = 1e-4;
 static const double gproji_stiffness_finest = 1e-6; /* after the metric has rested in vain, */
@@ -11140,8 +11145,10 @@ GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
 GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t round = 0, violations = 0;
+    bool circles = false; /* the last round, too, has switched bounds */
     while (s->error.code == GPROJ_OK) {
         bool violated, again, guard;
+        gproji_course merit;
         if (!gproji_find_step(loop, epsilon)) return false;
         loop->iteration.step = gproji_take_step(s, 1);
         if (!(loop->iteration.step <= gproji_step_most)) return false;
@@ -11149,12 +11156,25 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         violated = loop->hooks.inspect && violations < GPROJI_VIOLATIONS &&
                    loop->hooks.inspect(loop->hooks.user, s->vector.saved, s->x);
         again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
+        circles = circles || (again && round + 1 == GPROJI_BOUND_ROUNDS);
         round += round < GPROJI_BOUND_ROUNDS;
-        if (!violated && !again) return true;
+        if (!violated && !again) {
+            if (!circles) return true;
+            gproji_merit_along(s, &merit);
+            if (-gproji_merit_slope(&merit, 0) > gproji_bound_descent * gproji_merit_at(&merit, 0)) return true;
+            /* The set that is left leads nowhere; that of violated rows leads down. */
+            gproji_step_back(s);
+            gproji_start_bounds(s);
+            circles = false;
+            continue;
+        }
         guard = gproji_wake_guard(s);
         gproji_step_back(s);
         violations += violated;
-        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user)))) round = 0;
+        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user)))) {
+            round = 0;
+            circles = false;
+        }
     }
     return false;
 }
@@ -11572,6 +11592,8 @@ static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_reach = 2;       /* the longest slide, in the largest |x| and 1 */
+static const double gproji_nearest_rise = 2;        /* of the wishes in a slide, see gproji_take_slide */
 static const double gproji_nearest_left = 0.5;      /* of the residual: if a last step leaves more, safeguards yield */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
@@ -11710,28 +11732,39 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
     return false;
 }
 
-/* The augmented Lagrangian sum w^2 (phi^2 + 2 y phi) at x with the risen multipliers, and its slope along the step if
-   rows were linearised at x. A bound's row adds -w^2 y^2 if phi > -y. */
-GPROJI_INTERNAL double gproji_lagrangian(const gproj_system *s, const double *x, double *slope) {
-    double value = 0;
+/* What slides are judged by, at some x. */
+typedef struct gproji_slope {
+    double value;    /* of the augmented Lagrangian sum w^2 (phi^2 + 2 y phi) with the risen multipliers */
+    double slope;    /* of it along the step, if rows were linearised at x */
+    double wishes;   /* sum w^2 phi^2 over the wishes */
+    double violated; /* and over the others */
+} gproji_slope;
+
+/* A bound's row adds -w^2 y^2 to the Lagrangian if phi > -y. */
+GPROJI_INTERNAL gproji_slope gproji_lagrangian(const gproj_system *s, const double *x) {
+    gproji_slope at = {0, 0, 0, 0};
     int32_t i, r;
-    if (slope) *slope = 0;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi;
+            double w2 = gproji_weight2(g, row), y = g->multiplier[r].y + g->multiplier[r].rise, phi, counted;
             if (!(w2 > 0)) continue;
             phi = gproji_row_value(g, r, x);
+            counted = gproji_counted(g, phi);
+            if (g->kind == GPROJ_WISH)
+                at.wishes += w2 * phi * phi;
+            else
+                at.violated += w2 * counted * counted;
             if (g->kind == GPROJ_BOUND && phi + y >= 0) {
-                value -= w2 * y * y;
+                at.value -= w2 * y * y;
                 continue;
             }
-            value += w2 * phi * (phi + 2 * y);
-            if (slope) *slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->vector.step);
+            at.value += w2 * phi * (phi + 2 * y);
+            at.slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->vector.step);
         }
     }
-    return value;
+    return at;
 }
 
 /* Evaluates phi of active constraints and bounds at x, without gradients; 0 for other rows. Returns sum w^2 phi^2. */
@@ -11765,19 +11798,26 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
     memcpy(s->vector.step, s->vector.sum, (size_t)s->variable_count * sizeof *s->vector.step);
 }
 
-/* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. False: none
-   does, x is as before. */
+/* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. None may be
+   far longer than x, and wishes may rise only as far as there are violations to take off: large multipliers would let
+   them. False: none does, x is as before. */
 GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
+    gproji_slope before, after;
     gproj_system *s = loop->system;
-    double slope, before = gproji_lagrangian(s, s->vector.saved, &slope), after, t = 1;
+    double largest = 0, t = 1;
     int32_t i, r;
+    before = gproji_lagrangian(s, s->vector.saved);
+    for (i = 0; i < s->variable_count; ++i) largest = gproji_fmax(largest, fabs(s->vector.saved[i]));
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
-        if (!(loop->iteration.step <= gproji_step_most)) break;
+        if (!(loop->iteration.step <= gproji_nearest_reach * (1 + largest))) continue;
         gproji_retract(s);
-        after = gproji_lagrangian(s, s->x, NULL);
-        if (!(after <= DBL_MAX)) continue;
-        if (loop->iteration.step > 1e-7 && after > before + 0.1 * t * slope) continue; /* below, rounding decides */
+        after = gproji_lagrangian(s, s->x);
+        if (!(after.value <= DBL_MAX)) continue;
+        if (loop->iteration.step > 1e-7 && /* below, rounding decides */
+            (after.value > before.value + 0.1 * t * before.slope ||
+             after.wishes > gproji_nearest_rise * (before.wishes + 10 * before.violated)))
+            continue;
         if (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)) continue;
         loop->iteration.length = t;
         for (i = 0; i < s->group_count; ++i)
@@ -11793,12 +11833,19 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
 GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
-    double shift = curved ? loop->shift : 0;
+    bool flat = loop->iteration.optimality <= gproji_nearest_optimal && gproji_holds(loop);
+    bool anew = flat && loop->shift > gproji_nearest_flat;
+    double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->shift;
+    int32_t i, r;
     gproji_pass_over(s, 0, gproji_save_task);
+    /* Rows that depend on each other let multipliers grow without need, which may hide a minimum: these begin anew. */
+    for (i = 0; anew && i < s->group_count; ++i)
+        for (r = 0; s->group[i].kind == GPROJ_CONSTRAINT && r < s->group[i].row_count; ++r)
+            s->group[i].multiplier[r].y = 0;
     for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_CURVED_TRIALS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
-            loop->minimum = curved && shift <= gproji_nearest_flat;
+            loop->minimum = curved && !anew && shift <= gproji_nearest_flat;
             if (curved) { /* the first shift to try next time */
                 loop->shift = shift;
                 if (loop->iteration.length == 1) loop->shift = shift < gproji_nearest_flat ? 0 : shift / 3;
@@ -11811,6 +11858,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
         if (curved && loop->iteration.factorisations == GPROJI_CURVED_TRIALS) {
+            if (flat) loop->shift = shift;
             curved = false;
             shift = 0;
         }
@@ -20250,7 +20298,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     for (c = 0; normal && c < 3; ++c) largest = gproji_fmax(largest, fabs(normal[c]));
     for (c = 0; normal && c < 3; ++c) n[c] = normal[c] / largest; /* of any length: squares of 1e200 overflow */
     if (!gproji_normalise3(n, gproji_zero))
-        return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal has no direction"));
+        return gproji_none(gproji_refuse(&form->error, "orthogonal edges: the normal is missing, zero or not finite"));
     /* t1'(v_j - v_i) = t2'(v_j - v_i) = 0, t1 and t2 orthogonal to n: the edge is parallel to n. */
     gproji_tangents3(n, across[0], across[1]);
     group = gproji_new_group(form, &gproji_orthogonal_edges_rule, weight);
@@ -20802,9 +20850,9 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     int32_t rows;
     if (!part) return -1;
     if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min)))
-        return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0", rule->name, min));
+        return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0 and finite", rule->name, min));
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices))
-        return gproji_none(gproji_refuse(&form->error, "%s: the prices %g and %g must be >= 0 and not both 0",
+        return gproji_none(gproji_refuse(&form->error, "%s: the prices %g and %g must be finite and >= 0, not both 0",
                                          rule->name, length_price, area_price));
     if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
     part->given[GPROJI_PRICE] = length_price / form->scale;
@@ -21329,7 +21377,8 @@ GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_l
         return false;
     }
     if (!supports || count < 0 || (count > 0 && !supports->vertex)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "equilibrium: there are no supports");
+        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                    "equilibrium: the supports are missing, or their list is");
         return false;
     }
     if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
@@ -24052,10 +24101,12 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    = I. They move the handles by L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|.
    */
 
-static const double gproji_drag_epsilon = 3e-4; /* see (1) */
-static const double gproji_drag_damping = 10;   /* epsilon's factor where a step is damped */
-static const double gproji_drag_light = 1e-2;   /* the root of the other variables' weight in D */
-static const double gproji_drag_stiff = 1e-6;   /* a handle that yields less, relative to a free one, does not move */
+static const double gproji_drag_epsilon = 3e-4;   /* see (1) */
+static const double gproji_drag_damping = 10;     /* epsilon's factor where a step is damped */
+static const double gproji_drag_light = 1e-2;     /* the root of the other variables' weight in D */
+static const double gproji_drag_most = 1;         /* a move goes only part of the way beyond this residual, */
+static const double gproji_drag_least = 1.0 / 16; /* unless this part is too long, too */
+static const double gproji_drag_stiff = 1e-6;     /* a handle that yields less, relative to a free one, does not move */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
@@ -24237,24 +24288,34 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
 
 /* -- moves -- */
 
-/* x = base + Q m, with the m that brings the handles closest to their wanted places. */
-GPROJI_INTERNAL void gproji_follow_handles(gproj_drag *drag) {
+/* x = base + t Q m, with the m that brings the handles closest to their wanted places, and t the largest of 1, 1/2, ..
+   that leaves at most this residual, or `otherwise`. Returns the residual; 0 if any will do: `most` is infinite. */
+GPROJI_INTERNAL double gproji_follow_handles(gproj_drag *drag, double most, double otherwise) {
     size_t n = (size_t)drag->variables, m = (size_t)drag->columns, i, p, k, handles = (size_t)drag->info.handles;
-    double *x = gproj_system_values(drag->form->system), *lack = drag->work, *amount = drag->work + m;
+    double *x = gproj_system_values(drag->form->system), *lack = drag->work, *amount = drag->work + m, t, residual;
+    bool done = false;
     for (k = 0; k < m; ++k) lack[k] = drag->wanted[k] - drag->held[k];
     for (p = 0; p < (size_t)drag->info.freedom; ++p) amount[p] = gproji_dot(drag->pull + m * p, lack, m);
-    memcpy(x, drag->base, n * sizeof *x);
-    for (p = 0; p < (size_t)drag->info.freedom; ++p) {
-        const double *q = drag->motion + n * p;
-        double a = amount[p];
-        for (i = 0; i < n; ++i) x[i] += a * q[i];
-        for (k = 0; k < m; ++k) lack[k] -= a * drag->lift[m * p + k];
+    for (t = 1;;) {
+        memcpy(x, drag->base, n * sizeof *x);
+        for (p = 0; p < (size_t)drag->info.freedom; ++p) {
+            const double *q = drag->motion + n * p;
+            double a = t * amount[p];
+            for (i = 0; i < n; ++i) x[i] += a * q[i];
+        }
+        residual = most < HUGE_VAL ? gproji_see_hard(drag->form->system, x) : 0;
+        if (residual <= most || done) break;
+        done = t <= gproji_drag_least;
+        t = done ? otherwise : t / 2;
     }
+    for (p = 0; p < (size_t)drag->info.freedom; ++p)
+        for (k = 0; k < m; ++k) lack[k] -= t * amount[p] * drag->lift[m * p + k];
     drag->info.behind = 0;
     for (k = 0; k < handles; ++k)
         drag->info.behind =
             gproji_fmax(drag->info.behind,
                         gproji_length3(lack + 3 * k) / (drag->handle.gram[k * (handles + 1)] * drag->form->scale));
+    return residual;
 }
 
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
@@ -24290,7 +24351,7 @@ GPROJI_INTERNAL gproj_code gproji_undo_move(gproj_drag *drag, gproj_drag_info be
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
     gproj_drag_info info;
     gproj_system *s;
-    double *x;
+    double *x, bound, residual;
     int32_t k, j, c, handles;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
@@ -24309,11 +24370,12 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
             for (c = 0; c < 3; ++c)
                 drag->wanted[3 * k + c] += drag->handle.gram[(size_t)k * (size_t)handles + (size_t)j] *
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
-    gproji_follow_handles(drag);
-    /* 2. Beyond the bound: linearise at x, and go on to the handles from there. */
-    if (drag->options.residual_bound > 0 && !(gproji_see_hard(s, x) <= drag->options.residual_bound)) {
+    bound = drag->options.residual_bound > 0 ? drag->options.residual_bound : HUGE_VAL;
+    residual = gproji_follow_handles(drag, gproji_fmax(bound, gproji_drag_most), 1);
+    /* 2. Beyond the bound: linearise at x, and go on to the handles from there, if the residual does not grow. */
+    if (residual > bound) {
         if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
-        gproji_follow_handles(drag);
+        gproji_follow_handles(drag, residual, 0);
     }
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;

@@ -107,6 +107,16 @@ static inline void gprojt_shake(gproj_mesh *mesh, double size, uint64_t seed) {
     for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] += size * (2 * gprojt_uniform(&seed) - 1);
 }
 
+/* Makes a grid of 5 x 5 a bulge with a twist, and shakes it. */
+static inline void gprojt_bulge(gproj_mesh *mesh, uint64_t seed) {
+    int32_t i;
+    for (i = 0; i < mesh->vertex_count; ++i) {
+        double x = mesh->position[3 * i] / 2.5 - 1, y = mesh->position[3 * i + 1] / 2.5 - 1;
+        mesh->position[3 * i + 2] = 0.75 * (1 - x * x) * (1 - y * y) + 0.3 * x * y;
+    }
+    gprojt_shake(mesh, 0.07, seed);
+}
+
 /* A generated mesh whose noise is `noise` mean edges. */
 static inline gproj_mesh *gprojt_noisy(int shape, int32_t n, double noise, uint64_t seed) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, n));

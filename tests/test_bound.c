@@ -145,6 +145,31 @@ GPROJT_TEST(nearest_points_of_polytopes) {
     GPROJT_CHECK(outside > 150 && exact >= 275);
 }
 
+/* Inequalities that one point satisfies, half of them just so: whichever sets of rows a step tries, one is found. */
+GPROJT_TEST(inequalities_that_can_hold) {
+    uint64_t seed = 8;
+    int32_t trial, i, k;
+    for (trial = 0; trial < 3000; ++trial) {
+        int32_t n = 2 + gprojt_below(&seed, 5), rows = 1 + gprojt_below(&seed, 14), group;
+        double inside[6], start[6], a[6];
+        gproj_system *s;
+        for (k = 0; k < n; ++k)
+            start[k] = 10 * gprojt_uniform(&seed) - 5, inside[k] = 4 * gprojt_uniform(&seed) - 2;
+        s = gprojt_system(NULL, n, start);
+        group = gprojt_add_group(s, "inequalities", GPROJ_BOUND, 1);
+        for (i = 0; i < rows; ++i) {
+            double c = gprojt_below(&seed, 2) ? 0 : 0.1 * gprojt_uniform(&seed);
+            for (k = 0; k < n; ++k) {
+                a[k] = 2 * gprojt_uniform(&seed) - 1;
+                c -= a[k] * inside[k];
+            }
+            gprojt_add_plane(s, group, n, a, c, i);
+        }
+        GPROJT_CHECK(gproj_system_solve(s, 100, NULL).outcome == GPROJ_CONVERGED);
+        gproj_system_destroy(s);
+    }
+}
+
 /* A point that must be in several discs; where two of them have nothing in common, the truth. */
 GPROJT_TEST(discs) {
     static const double centre[3][2] = {{0, 0}, {1.5, 0}, {0.7, 1.4}}, apart[2][2] = {{0, 0}, {5, 0}};
@@ -571,6 +596,7 @@ GPROJT_TEST(every_allocation_fails_once) { GPROJT_CHECK(gprojt_fail_every_alloca
 
 int main(void) {
     GPROJT_RUN(nearest_points_of_polytopes);
+    GPROJT_RUN(inequalities_that_can_hold);
     GPROJT_RUN(discs);
     GPROJT_RUN(empty_box);
     GPROJT_RUN(least_squares_of_positive_numbers);

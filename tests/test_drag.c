@@ -538,6 +538,35 @@ GPROJT_TEST(restorations_stay_near) {
     for (seed = 2; seed <= GPROJT_TOWERS; ++seed) GPROJT_NEAR(gprojt_bend_tower(seed), first, 1e-4);
 }
 
+/* Two handles that stand against lengths of edges: each move goes only as far as the residual allows, so that none throws the
+   mesh apart, and the same place again does not either. */
+GPROJT_TEST(handles_against_what_must_hold) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_triangle_grid(5, 5));
+    int32_t which[2] = {14, 21}, move, k;
+    gproj_handles handles = gprojt_vertex_handles(2, which);
+    gproj_drag_options options;
+    gproj_form *form;
+    gproj_drag *drag;
+    double *start, place[6];
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 0.01;
+    gprojt_bulge(mesh, 23);
+    start = gprojt_keep(mesh);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_lengths(form, 0, NULL, NULL, 1);
+    drag = gproj_drag_begin(form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    for (move = 1; move <= 60; ++move) {
+        for (k = 0; k < 6; ++k)
+            place[k] = start[3 * which[k / 3] + k % 3] + fmin(move / 30.0, 1) * (k % 3 == 2 ? 0.3 : k < 3 ? 0.25 : -0.2);
+        GPROJT_CHECK(gproj_drag_move(drag, place) == GPROJ_OK && gproj_drag_residual(drag) <= 1);
+    }
+    gproj_drag_cancel(drag);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(start);
+}
+
 /* What cannot hold is not restored by any step, however it is damped: the handle goes where it is dragged all the same. */
 GPROJT_TEST(what_cannot_be_restored) {
     gproj_mesh *mesh = gprojt_roof(5, 0.05);
@@ -1425,6 +1454,7 @@ int main(void) {
     GPROJT_RUN(releases_turn_no_face_over);
     GPROJT_RUN(a_long_drag);
     GPROJT_RUN(restorations_stay_near);
+    GPROJT_RUN(handles_against_what_must_hold);
     GPROJT_RUN(what_cannot_be_restored);
     GPROJT_RUN(restorations_by_far_are_not_made);
     GPROJT_RUN(a_wild_move);

@@ -171,6 +171,63 @@ GPROJT_TEST(farthest_points_are_left) {
     }
 }
 
+/* y = -1 and y^2 = 1 depend on each other: multipliers that grew on the way do not hide that (0.5, -1) is the minimum. */
+GPROJT_TEST(rows_that_depend_on_each_other) {
+    static const double begin[] = {1.8, -0.5, -2, 0.3};
+    int i, k;
+    for (i = 0; i < 4; ++i)
+        for (k = -1; k <= 3; ++k) {
+            double start[2] = {0.2, 0}, *x;
+            gproj_system *s = gproj_system_create(NULL);
+            gproj_term square = gprojt_term(1, 1, 1);
+            int32_t wish, rows;
+            start[1] = begin[i];
+            gproj_system_add_variables(s, 2, 1, start);
+            wish = gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
+            gprojt_add_linear(s, wish, 0, 1, -0.5, 0);
+            gprojt_add_linear(s, wish, 1, 1, -k, 1);
+            rows = gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
+            gprojt_add_linear(s, rows, 1, 1, 1, 0);
+            gproj_system_add_row(s, rows, 1, &square, -1, 1);
+            GPROJT_CHECK(gprojt_solve_nearest(s, 60).outcome == GPROJ_CONVERGED);
+            x = gproj_system_values(s);
+            GPROJT_CHECK(fabs(x[0] - 0.5) < 1e-6 && fabs(x[1] + 1) < 1e-12);
+            gproj_system_destroy(s);
+        }
+}
+
+/* Large multipliers do not throw a mesh so far that rounding makes a point of it: with equal lengths it ends nearer than what
+   a projection finds. */
+GPROJT_TEST(slides_stay_in_reach) {
+    static const uint64_t seeds[] = {10, 23, 33};
+    int32_t trial, nearest, i;
+    for (trial = 0; trial < 3; ++trial) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_triangle_grid(5, 5));
+        double moved[2] = {0, 0}, *before;
+        gprojt_bulge(mesh, seeds[trial]);
+        before = gprojt_keep(mesh);
+        for (nearest = 0; nearest < 2; ++nearest) {
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_solve_options options;
+            gproj_result result;
+            memset(&options, 0, sizeof options);
+            options.nearest = nearest != 0;
+            gproj_add_equal_lengths(form, 0, NULL, 1);
+            result = gproj_solve(form, 60, &options);
+            GPROJT_CHECK(result.residual <= result.tolerance && result.spoiled.collapsed_edges == 0);
+            for (i = 0; i < mesh->vertex_count; ++i) {
+                double d = gprojt_far(mesh->position + 3 * i, before + 3 * i);
+                moved[nearest] += d * d;
+            }
+            gproj_form_destroy(form);
+            memcpy(mesh->position, before, 3 * (size_t)mesh->vertex_count * sizeof(double));
+        }
+        GPROJT_CHECK(moved[1] < moved[0]);
+        free(before);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A row with a global group (low-rank update): the mean of many points is prescribed, closeness wished; they all move by
    the same. */
 GPROJT_TEST(global_rows) {
@@ -921,6 +978,8 @@ int main(void) {
     GPROJT_RUN(nearest_in_a_ball);
     GPROJT_RUN(bounds_let_go);
     GPROJT_RUN(farthest_points_are_left);
+    GPROJT_RUN(rows_that_depend_on_each_other);
+    GPROJT_RUN(slides_stay_in_reach);
     GPROJT_RUN(global_rows);
     GPROJT_RUN(one_side_only);
     GPROJT_RUN(weights_are_ratios);
