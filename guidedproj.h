@@ -540,10 +540,11 @@ typedef struct gproj_least_squares_result {
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
    zeros. `host`, `result` and `error` may be NULL. The work is in factorisations of a matrix with the pattern of A'A,
    so a row of A must not have very many entries. Most problems take 5 to 20, up to 30 if most bounds matter and the
-   residual stays large, and none more than 80. If A has dependent columns and damping is 0, nothing is added to the
-   problem: the matrix in each step has a diagonal larger by a part of 1e-12, but the solution satisfies the conditions
-   without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
-   for a wrong problem, GPROJ_ERROR_MEMORY. */
+   residual stays large, 40 and more if many columns nearly depend on others (forces in large, shallow shells), and none
+   more than 80. If A has dependent columns and damping is 0, nothing is added to the problem: the matrix in each step
+   has a diagonal larger by a part of 1e-12, but the solution satisfies the conditions without it. Returns GPROJ_OK also
+   for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for a wrong problem,
+   GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -6733,11 +6734,13 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
        (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
    + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block
    principal pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the
-   interior-point method goes on to a better guess. So nothing can cycle; factorisations have a limit besides. */
+   interior-point method goes on to a better guess. So nothing can cycle; factorisations have a limit besides. Each
+   guess is judged as it is and after the exchanges; the best of all is the result. */
 enum {
     GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
     GPROJI_SQUARES_ROUNDS = 12, /* exchanges, one factorisation each */
-    GPROJI_SQUARES_CORRECTORS = 3
+    GPROJI_SQUARES_CORRECTORS = 3,
+    GPROJI_SQUARES_STALLED = 4 /* guesses in turn that do not halve a small kkt */
 };
 
 /* Bounds and numbers beyond it are none: powers and products stay finite. */
@@ -7242,7 +7245,7 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     for (c = 0; c < in->pairs; ++c) d->target[c] = -in->slack[c] * in->dual[c];
     gproji_squares_direct(s, d);
     ratio = gproji_squares_mean(in, gproji_fmin(d->reach, 1)) / mean;
-    aim = 0.1 * ratio * ratio * mean;
+    aim = (ratio > 0.7 ? ratio : 0.1) * ratio * ratio * mean; /* a short predictor says that products are far apart */
     for (c = 0; c < in->pairs; ++c) d->target[c] += aim - in->sign[c] * d->x[in->variable[c]] * d->dual[c];
     gproji_squares_direct(s, d);
     /* 2. Gondzio's correctors, a solve each: new targets for products that a longer step leaves far from the aim. */
@@ -7289,7 +7292,7 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     const gproji_interior *in = &s->interior;
     double tolerance = 1e-4, doubt = 0.02, first = 0;
     bool moves = true;
-    int32_t j, c;
+    int32_t j, c, stalled = 0;
     /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
        within the bounds that is nearest to 0. */
     for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
@@ -7315,9 +7318,9 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     gproji_squares_free_all(s);
     /* 4. The interior-point method; polishes whenever it seems to know the active bounds. */
     if (!gproji_squares_interior(s)) return;
-    while (s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
-        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
-        bool last = !moves || gap <= 1e-22 * first, clear;
+    for (;;) {
+        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0), earlier = s->best_kkt;
+        bool last = !moves || gap <= 1e-22 * first || s->normal.factorisations >= GPROJI_SQUARES_LIMIT, clear, ready;
         int32_t undecided = 0;
         if (first <= 0) first = gap;
         for (c = 0; c < in->pairs; ++c) { /* a bound is decided once slack and multiplier differ a hundredfold */
@@ -7325,7 +7328,8 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
             undecided += slack > 1e-2 * in->dual[c] && slack < 1e2 * in->dual[c];
         }
         clear = (double)undecided / in->pairs <= doubt || gap <= 1e-5 * tolerance * first;
-        if (last || (imbalance <= tolerance && gap <= tolerance * first && clear)) {
+        ready = imbalance <= tolerance && gap <= tolerance * first && clear;
+        if (last || (imbalance <= 1e-4 && gap <= 1e-4 * first)) {
             /* Guesses trial and states from the interior point, which stays for the case that the guess is wrong. */
             for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, in->x[j]);
             for (c = 0; c < in->pairs; ++c) {
@@ -7334,11 +7338,15 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
                 s->state[j] = in->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
                 s->trial[j] = in->sign[c] > 0 ? s->lower[j] : s->upper[j];
             }
-            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+            /* Judges the guess itself: nearly dependent columns turn the rest of the gradient into long Newton steps,
+               which leave the bounds, so the interior point may stay the best there is. */
+            if (gproji_squares_judge(s)) return;
+            stalled = s->best_kkt <= 0.5 * earlier ? 0 : stalled + 1;
+            if ((last || ready) && gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+            if (last || s->code != GPROJ_OK || (stalled >= GPROJI_SQUARES_STALLED && s->best_kkt <= 1e-9)) return;
             gproji_squares_free_all(s);
-            if (last) return;
-            tolerance *= 1e-2, doubt *= 0.1;
-            gproji_squares_imbalance(s); /* `gradient` is the polish's */
+            if (ready) tolerance *= 1e-2, doubt *= 0.1;
+            gproji_squares_imbalance(s); /* `gradient` is the guess's */
         }
         moves = gproji_squares_advance(s);
     }
