@@ -505,7 +505,7 @@ typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
     const int32_t *row;   /* of each entry, in any order; entries at the same place are summed, in order */
-    const double *value;  /* of each entry; |value| <= 1e50; if all are below 1e-150: LIMIT, squares are 0 */
+    const double *value;  /* of each entry; |value| <= 1e50; LIMIT if all squares or products with b underflow */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
