@@ -504,8 +504,8 @@ GPROJ_API const int32_t *gproj_cholesky_permutation(const gproj_cholesky *choles
 typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
-    const int32_t *row;   /* of each entry, in any order; entries at the same place are summed */
-    const double *value;  /* of each entry; |value| <= 1e50 */
+    const int32_t *row;   /* of each entry, in any order; entries at the same place are summed, in order */
+    const double *value;  /* of each entry; |value| <= 1e50; LIMIT if all squares or products with b underflow */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
@@ -529,7 +529,9 @@ typedef struct gproj_least_squares_result {
        + damping^2 x is 0 for a variable between its bounds, >= 0 at a lower and <= 0 at an upper bound. kkt is the
        largest violation, divided by the largest entry of |A|'(|b| + |A||y|) + damping^2 |y| for the y nearest to 0
        within the bounds; both in units of the variables that give the columns of A length 1 (those shorter than 1e-30
-       of the longest count as empty). */
+       of the longest count as empty). Where a damping is much smaller than A's entries, x may be far from the minimum
+       with a tiny kkt, along directions that hardly change A x: the damping's terms are less than the rounding of A's.
+     */
     double kkt;
     gproj_memory memory; /* without the factorisation's: see factor_bytes, work_bytes */
     size_t factor_bytes; /* see gproj_cholesky_info */
@@ -537,13 +539,14 @@ typedef struct gproj_least_squares_result {
 } gproj_least_squares_result;
 
 /* Solves the problem. x, `columns` numbers: the start, and at the end the solution. Zeros are a good start. A start
-   that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1 is replaced by
-   zeros. `host`, `result` and `error` may be NULL. The work is in factorisations of a matrix with the pattern of A'A,
-   so a row of A must not have very many entries. Most problems take 5 to 20, up to 30 if most bounds matter and the
-   residual stays large, and none more than 80. If A has dependent columns and damping is 0, nothing is added to the
-   problem: the matrix in each step has a diagonal larger by a part of 1e-12, but the solution satisfies the conditions
-   without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE
-   for a wrong problem, GPROJ_ERROR_MEMORY. */
+   that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1, or so far away that
+   rounding hides a kkt of 1e-6, is replaced by zeros. `host`, `result` and `error` may be NULL. The work is in
+   factorisations of a matrix with the pattern of A'A, so a row of A must not have very many entries. Most problems take
+   5 to 20, up to 30 if most bounds matter and the residual stays large, 40 and more if many columns nearly depend on
+   others (forces in large, shallow shells), and none more than 80. If A has dependent columns and damping is 0, nothing
+   is added to the problem: the matrix in each step has a diagonal larger by a part of 1e-12, but the solution satisfies
+   the conditions without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX,
+   _NUMBER, _SIZE for a wrong problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -6737,11 +6740,13 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
        (A'A + damping^2 I + D + sum z/s) dx = -(g - sum +-z) + sum +-t/s,   s dz + z ds = t,
    + for lower and - for upper bounds, with the gradient g and the step's target t. Exchanges are those of block
    principal pivoting (Portugal, Judice, Vicente 1994), as long as each round halves the mistakes; then the
-   interior-point method goes on to a better guess. So nothing can cycle; factorisations have a limit besides. */
+   interior-point method goes on to a better guess. So nothing can cycle; factorisations have a limit besides. Each
+   guess is judged as it is and after the exchanges; the best of all is the result. */
 enum {
     GPROJI_SQUARES_LIMIT = 80,  /* factorisations */
     GPROJI_SQUARES_ROUNDS = 12, /* exchanges, one factorisation each */
-    GPROJI_SQUARES_CORRECTORS = 3
+    GPROJI_SQUARES_CORRECTORS = 3,
+    GPROJI_SQUARES_STALLED = 4 /* guesses in turn that do not halve a small kkt */
 };
 
 /* Bounds and numbers beyond it are none: powers and products stay finite. */
@@ -6795,6 +6800,7 @@ typedef struct gproji_interior {
 
 typedef struct gproji_squares {
     const gproj_least_squares *problem;
+    gproj_least_squares summed; /* the problem, if entries are at the same place */
     int32_t columns;
     gproji_heap heap;
     gproji_pool pool;
@@ -6962,10 +6968,41 @@ GPROJI_INTERNAL void gproji_squares_multiply(gproji_squares *s, int64_t *mark) {
 GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
     const gproj_least_squares *p = s->problem;
     gproji_normal_matrix *normal = &s->normal;
-    int64_t *start = s->rows.start, *mark, e, entries;
-    double largest = 0, *product = NULL;
-    int32_t i, j;
-    /* 1. A by rows: a counting sort, after which start[i] is the end of row i. */
+    int64_t *start = s->rows.start, *mark, *first = NULL, e, entries;
+    double largest = 0, *product = NULL, *value = NULL;
+    int32_t i, j, *row = NULL, pass;
+    /* 1. Sums entries at the same place, if there are any: as terms of their own they would hide what they leave. The
+       first pass counts. start[i] is the end of row i's last entry. */
+    for (pass = 0; pass < 2; ++pass) {
+        for (j = 0, entries = 0; j < s->columns; ++j) {
+            int64_t begin = entries;
+            if (pass) first[j + 1] = first[j];
+            for (e = p->start[j]; e < p->start[j + 1]; ++e) {
+                i = p->row[e];
+                if (start[i] <= begin) {
+                    start[i] = ++entries;
+                    if (pass) row[first[j + 1]] = i, value[first[j + 1]++] = p->value[e];
+                } else if (pass) {
+                    value[start[i] - 1] += p->value[e];
+                }
+            }
+        }
+        memset(start, 0, ((size_t)p->rows + 1) * sizeof *start);
+        if (pass || entries == p->start[s->columns]) break;
+        first = (int64_t *)gproji_pool_take_zeroed(&s->pool, (int64_t)s->columns + 1, sizeof *first);
+        row = gproji_take_ints(&s->pool, entries);
+        value = (double *)gproji_pool_take(&s->pool, entries, sizeof *value);
+        if (!first || !row || !value) {
+            s->code = gproji_fail_memory(s->error);
+            return;
+        }
+    }
+    if (first) {
+        s->summed = *p;
+        s->summed.start = first, s->summed.row = row, s->summed.value = value;
+        s->problem = p = &s->summed;
+    }
+    /* 2. A by rows: a counting sort, after which start[i] is the end of row i. */
     for (e = 0; e < p->start[s->columns]; ++e) start[p->row[e] + 1]++;
     for (i = 0; i < p->rows; ++i) start[i + 1] += start[i];
     for (j = 0; j < s->columns; ++j)
@@ -6975,7 +7012,7 @@ GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
         }
     for (i = p->rows; i > 0; --i) start[i] = start[i - 1];
     start[0] = 0;
-    /* 2. A'A, counted and then multiplied. */
+    /* 3. A'A, counted and then multiplied. */
     mark = (int64_t *)gproji_take(&s->heap, (size_t)s->columns, sizeof(int64_t));
     if (mark) {
         gproji_squares_multiply(s, mark);
@@ -6991,7 +7028,7 @@ GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
         s->code = gproji_fail_memory(s->error);
         return;
     }
-    /* 3. The diagonal: empty columns count as the longest, so that nothing is divided by 0. */
+    /* 4. The diagonal: empty columns count as the longest, so that nothing is divided by 0. */
     for (j = 0; j < s->columns; ++j) {
         s->diagonal[j] = normal->product[normal->start[j]] + normal->damping;
         largest = gproji_fmax(largest, s->diagonal[j]);
@@ -7246,7 +7283,7 @@ GPROJI_INTERNAL bool gproji_squares_advance(gproji_squares *s) {
     for (c = 0; c < in->pairs; ++c) d->target[c] = -in->slack[c] * in->dual[c];
     gproji_squares_direct(s, d);
     ratio = gproji_squares_mean(in, gproji_fmin(d->reach, 1)) / mean;
-    aim = 0.1 * ratio * ratio * mean;
+    aim = (ratio > 0.7 ? ratio : 0.1) * ratio * ratio * mean; /* a short predictor says that products are far apart */
     for (c = 0; c < in->pairs; ++c) d->target[c] += aim - in->sign[c] * d->x[in->variable[c]] * d->dual[c];
     gproji_squares_direct(s, d);
     /* 2. Gondzio's correctors, a solve each: new targets for products that a longer step leaves far from the aim. */
@@ -7292,15 +7329,17 @@ GPROJI_INTERNAL bool gproji_squares_propose(gproji_squares *s, const double *x) 
 GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     const gproji_interior *in = &s->interior;
     double tolerance = 1e-4, doubt = 0.02, first = 0;
-    bool moves = true;
-    int32_t j, c;
-    /* 1. The start itself, or 0 if the start is worse. Violations are relative to the gradient's terms at the point
-       within the bounds that is nearest to 0. */
+    bool moves = true, solved;
+    int32_t j, c, stalled = 0;
+    /* 1. The start itself, or 0 if the start is worse or too far away. Violations are relative to the gradient's terms
+       at the point within the bounds that is nearest to 0. */
     for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, 0);
     s->scale = gproji_squares_gradient(s, s->trial);
     if (!(s->scale > 0)) s->scale = 1;
-    if (gproji_squares_propose(s, x)) return;
-    if (s->best_kkt > 1 && gproji_squares_propose(s, NULL)) return;
+    solved = gproji_squares_propose(s, x);
+    /* Far away rounding hides all violations. */
+    if (!(s->best_kkt <= 1 && s->noise <= 1e-6 * s->scale)) solved = gproji_squares_propose(s, NULL);
+    if (solved) return;
     /* 2. A good start knows the active bounds. */
     if (s->best_kkt <= 1e-3) {
         for (j = 0; j < s->columns; ++j) {
@@ -7319,9 +7358,9 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
     gproji_squares_free_all(s);
     /* 4. The interior-point method; polishes whenever it seems to know the active bounds. */
     if (!gproji_squares_interior(s)) return;
-    while (s->normal.factorisations < GPROJI_SQUARES_LIMIT) {
-        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0);
-        bool last = !moves || gap <= 1e-22 * first, clear;
+    for (;;) {
+        double imbalance = gproji_squares_imbalance(s), gap = gproji_squares_mean(in, 0), earlier = s->best_kkt;
+        bool last = !moves || gap <= 1e-22 * first || s->normal.factorisations >= GPROJI_SQUARES_LIMIT, clear, ready;
         int32_t undecided = 0;
         if (first <= 0) first = gap;
         for (c = 0; c < in->pairs; ++c) { /* a bound is decided once slack and multiplier differ a hundredfold */
@@ -7329,7 +7368,8 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
             undecided += slack > 1e-2 * in->dual[c] && slack < 1e2 * in->dual[c];
         }
         clear = (double)undecided / in->pairs <= doubt || gap <= 1e-5 * tolerance * first;
-        if (last || (imbalance <= tolerance && gap <= tolerance * first && clear)) {
+        ready = imbalance <= tolerance && gap <= tolerance * first && clear;
+        if (last || (imbalance <= 1e-4 && gap <= 1e-4 * first)) {
             /* Guesses trial and states from the interior point, which stays for the case that the guess is wrong. */
             for (j = 0; j < s->columns; ++j) s->trial[j] = gproji_squares_clip(s, j, in->x[j]);
             for (c = 0; c < in->pairs; ++c) {
@@ -7338,11 +7378,15 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
                 s->state[j] = in->sign[c] > 0 ? GPROJI_VARIABLE_LOWER : GPROJI_VARIABLE_UPPER;
                 s->trial[j] = in->sign[c] > 0 ? s->lower[j] : s->upper[j];
             }
-            if (gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+            /* Judges the guess itself: nearly dependent columns turn the rest of the gradient into long Newton steps,
+               which leave the bounds, so the interior point may stay the best there is. */
+            if (gproji_squares_judge(s)) return;
+            stalled = s->best_kkt <= 0.5 * earlier ? 0 : stalled + 1;
+            if ((last || ready) && gproji_squares_polish(s, GPROJI_SQUARES_ROUNDS)) return;
+            if (last || s->code != GPROJ_OK || (stalled >= GPROJI_SQUARES_STALLED && s->best_kkt <= 1e-9)) return;
             gproji_squares_free_all(s);
-            if (last) return;
-            tolerance *= 1e-2, doubt *= 0.1;
-            gproji_squares_imbalance(s); /* `gradient` is the polish's */
+            if (ready) tolerance *= 1e-2, doubt *= 0.1;
+            gproji_squares_imbalance(s); /* `gradient` is the guess's */
         }
         moves = gproji_squares_advance(s);
     }
@@ -7352,7 +7396,8 @@ GPROJI_INTERNAL void gproji_squares_solve(gproji_squares *s, const double *x) {
 GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
     static const double clear = 1e-7; /* relative to the terms in a row, and to the largest variable */
     const gproj_least_squares *p = s->problem;
-    double extent = 0, *noise = s->step; /* extent: max |x|, scaled */
+    double extent = 0, most = 0, *noise = s->step; /* extent: max |x|, scaled; most: of the gradient's terms */
+    bool empty = true;
     int32_t i, j;
     int64_t e;
     if (!(s->best_kkt <= 1e-9)) return false;
@@ -7360,6 +7405,10 @@ GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
        -1 if the variable is fixed, or held at a bound beyond doubt. */
     for (j = 0; j < s->columns; ++j) {
         bool held = s->best[j] <= s->lower[j] || s->best[j] >= s->upper[j];
+        for (e = p->start[j]; e < p->start[j + 1] && s->lower[j] < s->upper[j]; ++e) {
+            empty = empty && (p->value[e] == 0 || s->magnitude[p->row[e]] == 0);
+            most = gproji_fmax(most, fabs(p->value[e]) * s->magnitude[p->row[e]]);
+        }
         extent = gproji_fmax(extent, fabs(s->best[j]) / s->unit[j]);
         noise[j] = -1;
         if (s->lower[j] >= s->upper[j] || (held && s->unit[j] * fabs(s->gradient[j]) > s->noise)) continue;
@@ -7368,21 +7417,20 @@ GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
             noise[j] += 16 * DBL_EPSILON * fabs(p->value[e]) * s->magnitude[p->row[e]];
         noise[j] = s->unit[j] * gproji_fmax(noise[j], 2 * fabs(s->gradient[j]));
     }
+    if (!empty && most < 1e-6 * DBL_MIN) return false; /* products have underflowed */
     /* 2. A row with a clear residual that drowns in the gradients of all variables that could mend it, because other
-       rows round by more or entries in the same place cancel: nobody knows whether that row has a better solution. */
+       rows round by more: nobody knows whether that row has a better solution. */
     for (i = 0; s->columns > 0 && i < p->rows; ++i) {
         int64_t end = s->rows.start[i + 1];
         double largest = 0, part = 0, around = 0, residual = fabs(s->residual[i]);
         if (!(residual > clear * s->magnitude[i])) continue;
         for (e = s->rows.start[i]; e < end; ++e) largest = gproji_fmax(largest, fabs(s->rows.value[e]));
-        for (e = s->rows.start[i]; e < end;) {
-            double sum = 0, size = 0;
+        for (e = s->rows.start[i]; e < end; ++e) {
+            double size = fabs(s->rows.value[e]);
             j = s->rows.column[e];
-            for (; e < end && s->rows.column[e] == j; ++e) sum += s->rows.value[e], size += fabs(s->rows.value[e]);
             /* Entries that are rounding beside others do not count, nor do variables that the row hardly moves. */
-            if (noise[j] < 0 || !(size > 1e-12 * largest) || !(residual > clear * extent * s->unit[j] * fabs(sum)))
-                continue;
-            part = gproji_fmax(part, s->unit[j] * fabs(sum) * residual);
+            if (noise[j] < 0 || !(size > 1e-12 * largest) || !(residual > clear * extent * s->unit[j] * size)) continue;
+            part = gproji_fmax(part, s->unit[j] * size * residual);
             around = gproji_fmax(around, noise[j]);
         }
         if (part < around) return false;
