@@ -183,12 +183,12 @@ GPROJT_TEST(rows_that_depend_on_each_other) {
             int32_t wish, rows;
             start[1] = begin[i];
             gproj_system_add_variables(s, 2, 1, start);
-            wish = gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
-            gprojt_add_linear(s, wish, 0, 1, -0.5, 0);
-            gprojt_add_linear(s, wish, 1, 1, -k, 1);
             rows = gprojt_add_group(s, "rows", GPROJ_CONSTRAINT, 1);
             gprojt_add_linear(s, rows, 1, 1, 1, 0);
             gproj_system_add_row(s, rows, 1, &square, -1, 1);
+            wish = gprojt_add_group(s, "wish", GPROJ_WISH, 0.1);
+            gprojt_add_linear(s, wish, 0, 1, -0.5, 0);
+            gprojt_add_linear(s, wish, 1, 1, -k, 1);
             GPROJT_CHECK(gprojt_solve_nearest(s, 60).outcome == GPROJ_CONVERGED);
             x = gproj_system_values(s);
             GPROJT_CHECK(fabs(x[0] - 0.5) < 1e-6 && fabs(x[1] + 1) < 1e-12);
