@@ -1690,8 +1690,9 @@ typedef struct gproj_drag_options {
        anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
        more than a mean edge length for it. For long drags. Where following the handles all the way would leave a
        residual above 1, or one that grows in spite of that step, they stay behind (gproj_drag_info), and follow in the
-       next moves, also to the same place. A move then costs an evaluation of all rows, and now and then as much as
-       gproj_drag_begin. 0 or INFINITY: never. */
+       next moves, also to the same place; but a jump of which even a sixteenth would leave more than 1 is made at once.
+       A move then costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0 or INFINITY: never.
+     */
     double residual_bound;
     bool keep_wishes; /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -11629,7 +11630,8 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
      matrix is calmer. Rows that a refresh linearises have no curvature that is known here;
    - bounds act by the signs of their multipliers, and are switched by the step that was found;
    - x + t dx is led back to phi = 0 by steps orthogonal to that set, with the same factor;
-   - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian and turns no face over.
+   - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian, goes no farther than x is large, lets wishes
+     rise no more than violations ask for, and turns no face over.
    The first iteration is a guided projection and the last ones are plain projections, so that everything holds however
    far the slides came; safeguards yield there where they are in the way. A small s keeps x close to the set, a large
    one lets a step go farther. */
@@ -11781,16 +11783,16 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
 }
 
 /* What slides are judged by, at some x. */
-typedef struct gproji_slope {
+typedef struct gproji_slide_merit {
     double value;    /* of the augmented Lagrangian sum w^2 (phi^2 + 2 y phi) with the risen multipliers */
-    double slope;    /* of it along the step, if rows were linearised at x */
+    double slope;    /* of it along the step, where that is wanted */
     double wishes;   /* sum w^2 phi^2 over the wishes */
     double violated; /* and over the others */
-} gproji_slope;
+} gproji_slide_merit;
 
-/* A bound's row adds -w^2 y^2 to the Lagrangian if phi > -y. */
-GPROJI_INTERNAL gproji_slope gproji_lagrangian(const gproj_system *s, const double *x) {
-    gproji_slope at = {0, 0, 0, 0};
+/* `slope`: rows were linearised at x. A bound's row adds -w^2 y^2 to the Lagrangian if phi > -y. */
+GPROJI_INTERNAL gproji_slide_merit gproji_lagrangian(const gproj_system *s, const double *x, bool slope) {
+    gproji_slide_merit at = {0, 0, 0, 0};
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -11809,7 +11811,7 @@ GPROJI_INTERNAL gproji_slope gproji_lagrangian(const gproj_system *s, const doub
                 continue;
             }
             at.value += w2 * phi * (phi + 2 * y);
-            at.slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->vector.step);
+            if (slope) at.slope += 2 * w2 * (phi + y) * gproji_row_times(g, row, s->vector.step);
         }
     }
     return at;
@@ -11850,17 +11852,16 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
    far longer than x, and wishes may rise only as far as there are violations to take off: large multipliers would let
    them. False: none does, x is as before. */
 GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
-    gproji_slope before, after;
     gproj_system *s = loop->system;
+    gproji_slide_merit before = gproji_lagrangian(s, s->vector.saved, true), after;
     double largest = 0, t = 1;
     int32_t i, r;
-    before = gproji_lagrangian(s, s->vector.saved);
     for (i = 0; i < s->variable_count; ++i) largest = gproji_fmax(largest, fabs(s->vector.saved[i]));
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
         if (!(loop->iteration.step <= gproji_nearest_reach * (1 + largest))) continue;
         gproji_retract(s);
-        after = gproji_lagrangian(s, s->x);
+        after = gproji_lagrangian(s, s->x, false);
         if (!(after.value <= DBL_MAX)) continue;
         if (loop->iteration.step > 1e-7 && /* below, rounding decides */
             (after.value > before.value + 0.1 * t * before.slope ||
@@ -11906,7 +11907,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
         if (curved && loop->iteration.factorisations == GPROJI_CURVED_TRIALS) {
-            if (flat) loop->shift = shift;
+            if (flat) loop->shift = shift; /* multipliers begin anew in the next slide */
             curved = false;
             shift = 0;
         }
@@ -24421,7 +24422,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     bound = drag->options.residual_bound > 0 ? drag->options.residual_bound : HUGE_VAL;
     residual = gproji_follow_handles(drag, gproji_fmax(bound, gproji_drag_most), 1);
     /* 2. Beyond the bound: linearise at x, and go on to the handles from there, if the residual does not grow. */
-    if (residual > bound) {
+    if (!(residual <= bound)) { /* also where it is no number */
         if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
         gproji_follow_handles(drag, residual, 0);
     }

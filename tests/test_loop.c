@@ -385,9 +385,9 @@ static bool gprojt_see_slopes(void *user, gproj_system *s, const gproj_iteration
         for (k = 0; k < 4; ++k) {
             double t = (k < 2 ? k - 2 : k - 1) * h; /* -2h, -h, h, 2h: differences that are exact for quartics */
             x[0] = s->x[0] + t * along[i][0], x[1] = s->x[1] + t * along[i][1];
-            at[k] = gproji_lagrangian(s, x).value;
+            at[k] = gproji_lagrangian(s, x, false).value;
         }
-        slope = gproji_lagrangian(s, s->x).slope;
+        slope = gproji_lagrangian(s, s->x, true).slope;
         GPROJT_NEAR(slope, (8 * (at[2] - at[1]) - (at[3] - at[0])) / (12 * h), 1e-9 + 1e-9 * fabs(slope));
         *steepest = fmax(*steepest, fabs(slope));
     }

@@ -1887,14 +1887,11 @@ static bool is_for_the_solve(int row) {
 /* Notes an option on which the solve depends, as it was given. */
 static bool ask(tool *t, const tool_option *option, const char *value) {
     size_t size = strlen(option->name) + (value ? strlen(value) : 0) + 4;
+    const char *between = option->value[0] == '[' ? "=" : " ";
     char *text = (char *)take(t, size, 1);
     bool good;
     if (!text) return false;
-    snprintf(text, size, "--%s%s%s", option->name,
-             !value                    ? ""
-             : option->value[0] == '[' ? "="
-                                       : " ",
-             value ? value : "");
+    snprintf(text, size, "--%s%s%s", option->name, value ? between : "", value ? value : "");
     good = gprojx_asked_add(&t->asked, text, NULL) || fail_memory(t);
     free(text);
     return good;
