@@ -11,10 +11,12 @@
 
 # Real meshes make emulation slow; the tests on this machine have them.
 export GPROJ_DATA=/nonexistent LIMIT=1800
-# Cases that platforms go without. Emulated: half a minute or more, for speed, memory or threads.
-slow='cholesky_large cholesky_panels_and_updates_share_memory cholesky_every_allocation_fails fairness_at_poles
-    resumed_to_the_same_bytes resumed_while_it_is_mended restored_without_memory same_bits_for_all_workers
-    verdicts_of_random_sets planarity_with_a_pole'
+# Cases that platforms go without. Emulated: half a minute or more, for speed, memory, threads, or what does not depend on
+# processors.
+slow='cholesky_large cholesky_panels_and_updates_share_memory cholesky_every_allocation_fails cholesky_orders_agree
+    cholesky_not_positive_definite each_byte_forged fairness_at_poles meshes_with_zero_edges_and_faces
+    planarity_with_a_pole resumed_to_the_same_bytes resumed_while_it_is_mended restored_without_memory
+    same_bits_for_all_workers verdicts_of_random_sets'
 # Windows: compares with strtod and printf, whose last digits are wrong in the C library there.
 windows='round_trip_random_bits'
 # x87: the tests themselves compare doubles with constants, or bits with bits, that have the longer registers' digits; and
