@@ -10507,7 +10507,7 @@ typedef struct gproji_times {
 /* When safeguards give way. */
 typedef struct gproji_watch {
     double fallen;    /* the residual when its fall was looked at last, */
-    int32_t seen;     /* and the iterations then */
+    int32_t seen;     /* and the iterations then; nearest: those before the last ones, if these began early */
     int32_t yield_at; /* the iterations after which safeguards yield further, whatever the residual does */
 } gproji_watch;
 
@@ -11631,10 +11631,13 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
    - bounds act by the signs of their multipliers, and are switched by the step that was found;
    - x + t dx is led back to phi = 0 by steps orthogonal to that set, with the same factor;
    - t is the largest of 1, 1/2, ... that lowers the augmented Lagrangian, goes no farther than x is large, lets wishes
-     rise no more than violations ask for, and turns no face over.
-   The first iteration is a guided projection and the last ones are plain projections, so that everything holds however
-   far the slides came; safeguards yield there where they are in the way. A small s keeps x close to the set, a large
-   one lets a step go farther. */
+     rise no more than violations ask for, and turns no face over;
+   - where sets of bounds go in circles, no such step may lower the Lagrangian with the multipliers that it has found.
+     Last of all a calm step minimises the model for y as it is, which leads down unless x is a minimum; then y += phi,
+     as in the method of multipliers itself.
+   The first iteration is a guided projection and the last ones are plain projections, a quarter of all where slides go
+   far from the set, so that everything holds however far they came; safeguards yield there where they are in the way. A
+   small s keeps x close to the set, a large one lets a step go farther. */
 
 static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
 static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
@@ -11645,6 +11648,7 @@ static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is pos
 static const double gproji_nearest_reach = 2;       /* the longest slide, in the largest |x| and 1 */
 static const double gproji_nearest_rise = 2;        /* of the wishes in a slide, see gproji_take_slide */
 static const double gproji_nearest_left = 0.5;      /* of the residual: if a last step leaves more, safeguards yield */
+static const double gproji_nearest_far = 1e-6;      /* the residual that needs a quarter of the iterations at the end */
 static const double gproji_nearest_symmetry = 1e-3; /* the last guided step's part that breaks symmetries */
 enum {
     GPROJI_NEAREST_GUIDED = 1,  /* iterations at the beginning */
@@ -11653,6 +11657,8 @@ enum {
     GPROJI_CURVED_TRIALS = 6,   /* factorisations with curvature, before those without */
     GPROJI_NEAREST_ROUNDS = 12, /* multipliers with one factorisation */
     GPROJI_NEAREST_HALVES = 5,  /* lengths of a step */
+    GPROJI_CALM_HALVES = 10,    /* lengths of a calm one */
+    GPROJI_CALM_SWITCHES = 16,  /* sets of bounds that a calm one tries */
     GPROJI_NEAREST_RETRACT = 3  /* steps back to the constraints */
 };
 
@@ -11676,9 +11682,9 @@ GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_ro
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
 }
 
-/* Solves for dx and the rise of the multipliers, from rows linearised at x. False when the matrix is not positive
-   definite; rows are to be evaluated again after that. */
-GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift) {
+/* Solves for dx and the rise of the multipliers, in at most so many rounds, from rows linearised at x. False when the
+   matrix is not positive definite; rows are to be evaluated again after that. */
+GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift, int32_t rounds) {
     gproj_system *s = loop->system;
     double *sum = s->vector.sum, first = 0, left = HUGE_VAL, follows = gproji_epsilon_max;
     int32_t round, i, r, v;
@@ -11704,7 +11710,7 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     /* 2. Steps with the same factor, until G dx = -phi: each time phi becomes the model's remainder of a constraint,
        phi + G dx, and y rises by it; wishes are served by the first one. */
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
-    for (round = 0; round < GPROJI_NEAREST_ROUNDS && left > 1e-12 * first; ++round) {
+    for (round = 0; round < rounds && left > 1e-12 * first; ++round) {
         gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) sum[v] += s->vector.step[v];
@@ -11751,9 +11757,10 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
     return changed;
 }
 
-/* Finds a slide, again if it meets bounds. */
-GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift) {
+/* Finds a slide, again if it meets bounds; `calm`: for the multipliers as they are. */
+GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift, bool calm) {
     gproj_system *s = loop->system;
+    int32_t rounds = calm ? 1 : GPROJI_NEAREST_ROUNDS, switches = calm ? GPROJI_CALM_SWITCHES : GPROJI_BOUND_ROUNDS;
     int32_t round, i, r;
     /* 1. Bounds act first if they are violated or have a multiplier. */
     for (i = 0; i < s->group_count; ++i) {
@@ -11764,8 +11771,8 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
         }
     }
     /* 2. Again with those that the step would violate, and without those that would hold it back. */
-    for (round = 0; gproji_find_slide(loop, curved, shift); ++round) {
-        if (gproji_switch_multiplied_bounds(s) && round < GPROJI_BOUND_ROUNDS) {
+    for (round = 0; gproji_find_slide(loop, curved, shift, rounds); ++round) {
+        if (gproji_switch_multiplied_bounds(s) && round < switches) {
             for (i = 0; i < s->group_count; ++i)
                 for (r = 0; s->group[i].weight > 0 && r < s->group[i].row_count; ++r)
                     if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
@@ -11773,9 +11780,10 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
         }
         /* 3. Multipliers of bounds are not positive: limits their rise. */
         for (i = 0; i < s->group_count; ++i)
-            for (r = 0; s->group[i].kind == GPROJ_BOUND && r < s->group[i].row_count; ++r) {
+            for (r = 0; r < s->group[i].row_count; ++r) {
                 gproji_multiplier *multiplier = &s->group[i].multiplier[r];
-                multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
+                if (calm) multiplier->rise = 0;
+                if (s->group[i].kind == GPROJ_BOUND) multiplier->rise = gproji_fmin(multiplier->rise, -multiplier->y);
             }
         return true;
     }
@@ -11850,8 +11858,8 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
 
 /* Takes the longest part of the step that lowers the augmented Lagrangian, at least 1/2^(halves - 1) of it. None may be
    far longer than x, and wishes may rise only as far as there are violations to take off: large multipliers would let
-   them. False: none does, x is as before. */
-GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
+   them. `calm`: multipliers rise by what x then lacks. False: no part does, x is as before. */
+GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves, bool calm) {
     gproj_system *s = loop->system;
     gproji_slide_merit before = gproji_lagrangian(s, s->vector.saved, true), after;
     double largest = 0, t = 1;
@@ -11860,18 +11868,24 @@ GPROJI_INTERNAL bool gproji_take_slide(gproji_loop *loop, int32_t halves) {
     for (; halves > 0; --halves, t /= 2) {
         loop->iteration.step = gproji_take_step(s, t);
         if (!(loop->iteration.step <= gproji_nearest_reach * (1 + largest))) continue;
-        gproji_retract(s);
+        if (!calm) gproji_retract(s);
         after = gproji_lagrangian(s, s->x, false);
-        if (!(after.value <= DBL_MAX)) continue;
-        if (loop->iteration.step > 1e-7 && /* below, rounding decides */
+        if (!(after.value <= DBL_MAX) || (calm && !(after.value < before.value))) continue;
+        if ((calm || loop->iteration.step > 1e-7) && /* below, rounding decides */
             (after.value > before.value + 0.1 * t * before.slope ||
              after.wishes > gproji_nearest_rise * (before.wishes + 10 * before.violated)))
             continue;
         if (loop->hooks.refuse && loop->hooks.refuse(loop->hooks.user, s->vector.saved, s->x)) continue;
         loop->iteration.length = t;
-        for (i = 0; i < s->group_count; ++i)
-            for (r = 0; r < s->group[i].row_count; ++r)
-                s->group[i].multiplier[r].y += t * s->group[i].multiplier[r].rise;
+        for (i = 0; i < s->group_count; ++i) {
+            const gproji_group *g = &s->group[i];
+            for (r = 0; r < g->row_count; ++r) {
+                gproji_multiplier *multiplier = &g->multiplier[r];
+                if (calm && gproji_is_multiplied(g, &g->row[r])) multiplier->rise = gproji_row_value(g, r, s->x);
+                multiplier->y += calm ? multiplier->rise : t * multiplier->rise;
+                if (g->kind == GPROJ_BOUND) multiplier->y = gproji_fmin(multiplier->y, 0);
+            }
+        }
         return true;
     }
     gproji_step_back(s);
@@ -11892,8 +11906,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         for (r = 0; s->group[i].kind == GPROJ_CONSTRAINT && r < s->group[i].row_count; ++r)
             s->group[i].multiplier[r].y = 0;
     for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_CURVED_TRIALS + 4;) {
-        if (gproji_find_bounded_slide(loop, curved, shift) &&
-            gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES)) {
+        if (gproji_find_bounded_slide(loop, curved, shift, false) &&
+            gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES, false)) {
             loop->minimum = curved && !anew && shift <= gproji_nearest_flat;
             if (curved) { /* the first shift to try next time */
                 loop->shift = shift;
@@ -11912,6 +11926,10 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
             shift = 0;
         }
     }
+    loop->minimum = false;
+    if (gproji_find_bounded_slide(loop, false, 0, true) && gproji_take_slide(loop, GPROJI_CALM_HALVES, true))
+        return true;
+    gproji_evaluate(s);
     return false;
 }
 
@@ -11966,7 +11984,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
     int32_t restore = gproji_max(GPROJI_NEAREST_RESTORE, gproji_min(iterations / 10, GPROJI_NEAREST_RESTORE_MOST));
-    int32_t last = iterations - gproji_min(restore, iterations / 3), i;
+    int32_t last = loop->watch.seen > 0 ? loop->watch.seen : iterations - gproji_min(restore, iterations / 3), i;
     uint32_t state = 1;
     bool moved;
     for (n = loop->result.iterations + 1; n <= iterations; ++n) {
@@ -11977,6 +11995,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = iterations;
         s->progress.unguided = n <= half ? 0 : s->progress.unguided + 1;
+        if (n > iterations - iterations / 4 && n <= last && loop->standing.residual > gproji_nearest_far)
+            last = loop->watch.seen = n - 1;
         if (n > last + 1 && loop->standing.residual > gproji_nearest_left * loop->watch.fallen)
             gproji_let_safeguards_yield(loop);
         loop->watch.fallen = loop->standing.residual;

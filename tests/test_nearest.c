@@ -531,6 +531,56 @@ GPROJT_TEST(conditions_of_kuhn_and_tucker) {
     }
 }
 
+/* Many bounds, linear and quadratic, that all hold at `inside`; wished is nearness to somewhere else. */
+static gproj_result gprojt_nearest_within(uint64_t *seed) {
+    int32_t variables = 2 + gprojt_below(seed, 7), rows = 1 + gprojt_below(seed, 2 * variables), r, k;
+    gproj_system *s = gproj_system_create(NULL);
+    gproj_group group = {0};
+    gproj_solve_options options = gprojt_nearest();
+    gproj_result result;
+    double inside[8], start[8];
+    for (k = 0; k < variables; ++k) inside[k] = 4 * gprojt_uniform(seed) - 2, start[k] = 4 * gprojt_uniform(seed) - 2;
+    gproj_system_add_variables(s, variables, 1, start);
+    group.name = "bounds", group.kind = GPROJ_BOUND, group.schedule = gproj_keep(1);
+    gproj_system_add_group(s, &group);
+    group.name = "near", group.kind = GPROJ_WISH;
+    gproj_system_add_group(s, &group);
+    for (r = 0; r < rows; ++r) {
+        gproj_term term[5];
+        int32_t terms = 1 + gprojt_below(seed, 5);
+        double value = 0;
+        for (k = 0; k < terms; ++k) {
+            term[k].i = gprojt_below(seed, variables);
+            term[k].j = gprojt_below(seed, 2) ? -1 : gprojt_below(seed, variables);
+            term[k].a = gprojt_below(seed, 7) - 3;
+            value += term[k].a * inside[term[k].i] * (term[k].j < 0 ? 1 : inside[term[k].j]);
+        }
+        gproj_system_add_row(s, 0, terms, term, -value, r);
+    }
+    for (k = 0; k < variables; ++k) {
+        gproj_term one = {0, -1, 1};
+        one.i = k;
+        gproj_system_add_row(s, 1, 1, &one, 0.5 - gprojt_uniform(seed) - start[k], k);
+    }
+    result = gproj_system_solve(s, 100, &options);
+    gproj_system_destroy(s);
+    return result;
+}
+
+/* Sets of bounds that go in circles end a solve hardly ever. */
+GPROJT_TEST(bounds_seldom_block) {
+    uint64_t seed = 1;
+    int count, converged = 0, stalled = 0;
+    for (count = 0; count < 500; ++count) {
+        gproj_result result = gprojt_nearest_within(&seed);
+        converged += result.outcome == GPROJ_CONVERGED;
+        stalled += result.outcome == GPROJ_STALLED;
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.residual <= result.tolerance);
+    }
+    printf("    %d of %d are at a minimum, %d stalled\n", converged, count, stalled);
+    GPROJT_CHECK(converged >= 450 && stalled <= 20);
+}
+
 /* What satisfies everything already stays to the bit. */
 GPROJT_TEST(nothing_to_do) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_cube_sphere(3)), *flat;
@@ -989,6 +1039,7 @@ int main(void) {
     GPROJT_RUN(earlier_safeguards_rest);
     GPROJT_RUN(safeguards_yield_to_constraints);
     GPROJT_RUN(conditions_of_kuhn_and_tucker);
+    GPROJT_RUN(bounds_seldom_block);
     GPROJT_RUN(nothing_to_do);
     GPROJT_RUN(same_bits_for_all_crews);
     GPROJT_RUN(honest_verdicts);
