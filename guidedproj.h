@@ -11897,7 +11897,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     bool flat = loop->iteration.optimality <= gproji_nearest_optimal && gproji_holds(loop);
-    bool anew = flat && loop->shift > gproji_nearest_flat;
+    bool anew = flat && loop->shift > gproji_nearest_flat, calm;
     double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->shift;
     int32_t i, r;
     gproji_pass_over(s, 0, gproji_save_task);
@@ -11927,10 +11927,10 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         }
     }
     loop->minimum = false;
-    if (gproji_find_bounded_slide(loop, false, 0, true) && gproji_take_slide(loop, GPROJI_CALM_HALVES, true))
-        return true;
-    gproji_evaluate(s);
-    return false;
+    calm = gproji_find_bounded_slide(loop, false, 0, true) && gproji_take_slide(loop, GPROJI_CALM_HALVES, true);
+    gproji_lap(loop, GPROJ_PHASE_SOLVE);
+    if (!calm) gproji_evaluate(s);
+    return calm;
 }
 
 /* For rows seen with the weights of slides: optimality, and energies as the schedules weigh them. */
