@@ -11760,8 +11760,8 @@ GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
 /* Finds a slide, again if it meets bounds; `calm`: for the multipliers as they are. */
 GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, double shift, bool calm) {
     gproj_system *s = loop->system;
-    int32_t rounds = calm ? 1 : GPROJI_NEAREST_ROUNDS, switches = calm ? GPROJI_CALM_SWITCHES : GPROJI_BOUND_ROUNDS;
-    int32_t round, i, r;
+    int32_t rounds = GPROJI_NEAREST_ROUNDS, switches = GPROJI_BOUND_ROUNDS, round, i, r;
+    if (calm) rounds = 1, switches = GPROJI_CALM_SWITCHES;
     /* 1. Bounds act first if they are violated or have a multiplier. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
