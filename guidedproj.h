@@ -11778,7 +11778,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_slide(gproji_loop *loop, bool curved, d
                     if (s->group[i].row[r].weight > 0) s->group[i].row[r].phi = gproji_row_value(&s->group[i], r, s->x);
             continue;
         }
-        /* 3. Multipliers of bounds are not positive: limits their rise. */
+        /* 3. Multipliers of bounds are not positive: limits their rise. In a calm step none rise yet. */
         for (i = 0; i < s->group_count; ++i)
             for (r = 0; r < s->group[i].row_count; ++r) {
                 gproji_multiplier *multiplier = &s->group[i].multiplier[r];

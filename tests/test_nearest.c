@@ -533,18 +533,14 @@ GPROJT_TEST(conditions_of_kuhn_and_tucker) {
 
 /* Many bounds, linear and quadratic, that all hold at `inside`; wished is nearness to somewhere else. */
 static gproj_result gprojt_nearest_within(uint64_t *seed) {
-    int32_t variables = 2 + gprojt_below(seed, 7), rows = 1 + gprojt_below(seed, 2 * variables), r, k;
+    int32_t variables = 2 + gprojt_below(seed, 7), rows = 1 + gprojt_below(seed, 2 * variables), bounds, near, r, k;
     gproj_system *s = gproj_system_create(NULL);
-    gproj_group group = {0};
-    gproj_solve_options options = gprojt_nearest();
     gproj_result result;
     double inside[8], start[8];
     for (k = 0; k < variables; ++k) inside[k] = 4 * gprojt_uniform(seed) - 2, start[k] = 4 * gprojt_uniform(seed) - 2;
     gproj_system_add_variables(s, variables, 1, start);
-    group.name = "bounds", group.kind = GPROJ_BOUND, group.schedule = gproj_keep(1);
-    gproj_system_add_group(s, &group);
-    group.name = "near", group.kind = GPROJ_WISH;
-    gproj_system_add_group(s, &group);
+    bounds = gprojt_add_group(s, "bounds", GPROJ_BOUND, 1);
+    near = gprojt_add_group(s, "near", GPROJ_WISH, 1);
     for (r = 0; r < rows; ++r) {
         gproj_term term[5];
         int32_t terms = 1 + gprojt_below(seed, 5);
@@ -555,14 +551,10 @@ static gproj_result gprojt_nearest_within(uint64_t *seed) {
             term[k].a = gprojt_below(seed, 7) - 3;
             value += term[k].a * inside[term[k].i] * (term[k].j < 0 ? 1 : inside[term[k].j]);
         }
-        gproj_system_add_row(s, 0, terms, term, -value, r);
+        gproj_system_add_row(s, bounds, terms, term, -value, r);
     }
-    for (k = 0; k < variables; ++k) {
-        gproj_term one = {0, -1, 1};
-        one.i = k;
-        gproj_system_add_row(s, 1, 1, &one, 0.5 - gprojt_uniform(seed) - start[k], k);
-    }
-    result = gproj_system_solve(s, 100, &options);
+    for (k = 0; k < variables; ++k) gprojt_add_linear(s, near, k, 1, 0.5 - gprojt_uniform(seed) - start[k], k);
+    result = gprojt_solve_nearest(s, 100);
     gproj_system_destroy(s);
     return result;
 }
