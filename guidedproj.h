@@ -697,7 +697,7 @@ typedef struct gproj_solve_options {
     bool skip_closeness; /* gproj_solve only: no default guidance if no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
     /* gproj_solve only: measure steps by their smoothness and keep the faces' corners: sound meshes at any resolution.
-       Allow 200 iterations; most meshes take about 10. See gproj_solve. Without effect if `nearest` is set. */
+       Allow 200 iterations; most meshes take about 10. See gproj_solve, also for `nearest` with it. */
     bool smooth;
     /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
        the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
@@ -731,7 +731,8 @@ typedef struct gproj_result {
     double step;        /* largest |dx| of the last step */
     /* nearest: how far grad E + sum y grad phi = 0, the condition of a minimum, is from holding with the multipliers y
        that were found: the norm of the left side over that of the gradients in grad E, row by row. At most 1e-6 near a
-       minimum; far from one it may be large, and says no more than that. Else 0. */
+       minimum; far from one it may be large, and says no more than that; HUGE_VAL where wishes have only guided (see
+       gproj_solve). Else 0. */
     double optimality;
     int32_t worst_group; /* the group with that residual; -1 if nothing must hold */
     int32_t worst_element;
@@ -1524,7 +1525,13 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    gproj_solve_options.nearest and allow 60 iterations. There the guard lasts almost to the end and asks for 0.1 of a
    face's area, and a step that would take most of a face's area is shortened. With a limit above 50 a mesh that is
    spoiled at the minimum, or after half of them, gets the group "corners" for all its edges and corners: it is led to a
-   minimum with these, and lets them go only if the constraints do not hold at the end. */
+   minimum with these, and lets them go only if the constraints do not hold at the end.
+
+   Not all meshes have a minimum that is whole and can be reached. With options->smooth as well only the first attempt
+   looks for it. If that ends on a spoiled mesh, or the constraints do not hold, up to three smooth attempts follow from
+   the beginning, with up to three times as many iterations, in which wishes that would stay only guide (scaled to a
+   largest weight of 0.03). Where one of these ends better its mesh counts, which is farther away, and the outcome is
+   never GPROJ_CONVERGED: GPROJ_ITERATION_LIMIT with residual <= tolerance if all holds. Not in frames. */
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options);
 
 /* A solve in frames, for programs that draw between iterations: begin once, advance in each frame, and as long as
@@ -10528,6 +10535,7 @@ typedef struct gproji_loop {
     gproji_hooks hooks;
     int32_t iterations; /* at most */
     int32_t wish_last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
+    double fading;      /* > 0: wishes that would act to the end have this part of their weights, until then */
     double tolerance;
     gproji_times time;
     bool begun;    /* the first run has begun */
@@ -10592,21 +10600,28 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     loop->time.lap = now;
 }
 
+/* Is this a wish that has to end, although its schedule does not say so? */
+GPROJI_INTERNAL bool gproji_is_fading(const gproji_loop *loop, const gproji_group *g) {
+    return loop->fading > 0 && g->kind == GPROJ_WISH && g->role < GPROJI_GUARD && g->schedule.last >= loop->iterations;
+}
+
 /* The last iteration in which a group has a weight; 0: it keeps one for ever. */
 GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
-    if (g->schedule.last == GPROJ_LAST_GUIDING) return g->kind == GPROJ_WISH ? loop->wish_last : 0;
-    return g->schedule.last;
+    bool guiding = g->schedule.last == GPROJ_LAST_GUIDING;
+    if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wish_last;
+    return guiding ? 0 : g->schedule.last;
 }
 
 /* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
+    double weight = g->schedule.weight * (gproji_is_fading(loop, g) ? loop->fading : 1);
     if (g->role == GPROJI_BRAKE)
-        return g->schedule.weight * loop->system->stiffness *
+        return weight * loop->system->stiffness *
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
-    if (g->role >= GPROJI_METRIC) return g->schedule.weight * loop->system->stiffness;
+    if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
-    return g->schedule.weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
+    return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
 /* Sets the weights of iteration n; true when a group came back that had none before. */
@@ -23451,8 +23466,9 @@ static const double gproji_metric_force = 0.3; /* of changes of forces, once ste
 typedef struct gproji_beginning {
     double stiffness;
     double closeness; /* its weight at first; it fades by 0.7 an iteration and lasts for 20 */
+    bool fading;      /* wishes end that would act to the end: a minimum of them was looked for in vain */
 } gproji_beginning;
-static const gproji_beginning gproji_beginnings[] = {{1, 0}, {10, 0.3}, {10, 0}, {3, 0}};
+static const gproji_beginning gproji_beginnings[] = {{1, 0, false}, {10, 0.3, false}, {10, 0, false}, {3, 0, false}};
 enum {
     GPROJI_NEARBY = 1,
     GPROJI_ATTEMPTS_MOST = 3,
@@ -23610,7 +23626,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored;
     bool started = form->statics && form->statics->started;
     const gproji_part *part;
-    int32_t guided, guiding;
+    double largest = 0; /* weight of the wishes that are to fade */
+    int32_t guided, guiding, i;
     solve->on = solve->finished = false;
     if (form->drag) {
         solve->loop.result =
@@ -23630,7 +23647,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
     if (!gproji_form_ready(form)) goto failed;
     part = gproji_own_part(form, GPROJI_OWN_METRIC);
-    anchored = metric && beginning == gproji_beginnings && !gproji_has_active_wish(form);
+    anchored = metric && beginning->stiffness <= 1 && !gproji_has_active_wish(form);
     if (anchored) gproji_anchor_metric(form, part->group);
     if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
     part = gproji_own_part(form, GPROJI_OWN_BRAKE);
@@ -23647,6 +23664,11 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
     solve->loop.wish_last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
+    for (i = 0; beginning->fading && i < gproj_system_group_count(form->system); ++i) {
+        const gproji_group *g = gproji_group_at(form->system, i);
+        if (g->kind == GPROJ_WISH && g->role < GPROJI_GUARD) largest = gproji_fmax(largest, g->schedule.weight);
+    }
+    if (largest > 0) solve->loop.fading = gproji_nearest_scale / largest;
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
@@ -23736,18 +23758,13 @@ GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations
     return result;
 }
 
-/* Is this an end with which another attempt may do better? Where nothing must hold it would only wish for less. */
-GPROJI_INTERNAL bool gproji_falls_short(const gproj_result *result) {
-    if (result->worst_group < 0) return false;
-    return result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT ||
-           (result->outcome == GPROJ_CONVERGED && result->spoiled.total > 0);
-}
-
-/* Is one end better than another: exact first, then whole, then nearer to what must hold? */
-GPROJI_INTERNAL bool gproji_ends_better(const gproj_result *a, const gproj_result *b) {
-    bool exact = a->outcome == GPROJ_CONVERGED;
-    if (exact != (b->outcome == GPROJ_CONVERGED)) return exact;
-    return exact ? a->spoiled.total < b->spoiled.total : a->residual < b->residual;
+/* What an end lacks, to compare ends: 0 if everything holds on a whole mesh, or nothing must hold; less than 1 if it
+   holds on a spoiled one; else 1 and the residual. The nearest mesh may hold away from a minimum. */
+GPROJI_INTERNAL double gproji_lack(const gproj_result *result) {
+    bool away = result->optimality > 0 && result->residual <= result->tolerance;
+    if (result->worst_group < 0) return 0;
+    if (result->outcome != GPROJ_CONVERGED && !away) return 1 + result->residual;
+    return 1 - 1 / (1 + (double)result->spoiled.total);
 }
 
 /* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
@@ -23765,9 +23782,11 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
 }
 
 /* A solve that may begin again in another way: the beginning of a path decides its end. The best end counts. All
-   attempts share the iterations and the time. */
+   attempts share the time, and the smooth ones the iterations: if the first looks for the nearest mesh, those that
+   follow have three times as many. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
+    static const char guided[] = "; no whole mesh was found at a minimum of the wishes, which have only guided here";
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
     size_t count = (size_t)gproj_system_variable_count(s);
@@ -23775,10 +23794,11 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     double *end =
         (double *)gproji_take(&form->heap, count, sizeof *end); /* of the best attempt, if it was not the last */
     double begun = gproji_now(s);
-    bool started = form->statics && form->statics->started, here = true;
+    bool started = form->statics && form->statics->started, here = true, away = false;
     gproj_solve_options how = *options;
+    gproji_beginning beginning = gproji_beginnings[0];
     gproj_result result;
-    int32_t used, attempt = 1, stiffer = GPROJI_NEARBY + 1, k;
+    int32_t first = options->nearest ? 1 : 0, used, left, attempt = 1, stiffer = GPROJI_NEARBY + 1, k;
     if (!start || !end) {
         gproji_give(&form->heap, start, count, sizeof *start);
         gproji_give(&form->heap, end, count, sizeof *end);
@@ -23786,37 +23806,54 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         return gproji_failed_result(&form->error);
     }
     memcpy(start, x, count * sizeof *start);
-    result = gproji_attempt(form, iterations, 0, &gproji_beginnings[0], &how);
-    for (used = result.iterations; attempt < GPROJI_ATTEMPTS_MOST && gproji_falls_short(&result) && !form->solve.futile;
+    result = gproji_attempt(form, iterations, 0, &beginning, &how);
+    used = result.iterations;
+    left = iterations - used;
+    if (how.nearest)
+        left = GPROJI_ATTEMPTS_MOST * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_ATTEMPTS_MOST);
+    how.nearest = false;
+    for (; attempt < first + GPROJI_ATTEMPTS_MOST && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0 &&
+           !form->solve.futile;
          ++attempt) {
         gproj_result other;
         /* 1. Is there enough left for another one? */
-        if (iterations - used < GPROJI_ATTEMPT_LEAST) break;
+        if (left < GPROJI_ATTEMPT_LEAST) break;
         if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
         /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh at first, there may be a
            whole one nearby; otherwise stiffer steps may lead on. */
-        k = attempt == 1 && result.outcome == GPROJ_CONVERGED && !how.skip_closeness ? GPROJI_NEARBY : stiffer++;
+        k = attempt == first + 1 && gproji_lack(&result) < 1 && !how.skip_closeness ? GPROJI_NEARBY : stiffer;
+        if (attempt == first) k = 0;
+        if (k == stiffer) ++stiffer;
+        beginning = gproji_beginnings[k];
+        beginning.fading = options->nearest;
         if (here) memcpy(end, x, count * sizeof *end);
         gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
-        other = gproji_attempt(form, iterations - used, used, &gproji_beginnings[k], &how);
+        other = gproji_attempt(form, left, used, &beginning, &how);
+        left -= other.iterations - used;
         used = other.iterations;
         /* 3. The better of the two; its seconds are those of all attempts. */
-        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || gproji_ends_better(&other, &result);
+        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED ||
+               gproji_lack(&other) < gproji_lack(&result);
         for (k = 0; k < GPROJ_PHASE_COUNT; ++k) {
             double seconds = result.seconds[k] + other.seconds[k];
             result.seconds[k] = other.seconds[k] = seconds;
         }
-        if (here) result = other;
+        if (here) result = other, away = options->nearest;
     }
     result.attempts = attempt;
     if (!here) gproji_return_to(form, end);
-    if (attempt > 1 && gproji_falls_short(&result)) {
+    if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0) {
         size_t length = strlen(result.message);
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
                       attempt);
+    }
+    if (away && result.outcome != GPROJ_FAILED) {
+        if (result.outcome == GPROJ_CONVERGED) result.outcome = GPROJ_ITERATION_LIMIT;
+        result.optimality = HUGE_VAL;
+        gproji_append(result.message, sizeof result.message, strlen(result.message), guided, sizeof guided - 1);
     }
     gproji_give(&form->heap, start, count, sizeof *start);
     gproji_give(&form->heap, end, count, sizeof *end);
@@ -23826,9 +23863,8 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproj_result result;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
-    result = options && options->smooth && !options->nearest
-                 ? gproji_solve_smooth(form, iterations, options)
-                 : gproji_attempt(form, iterations, 0, &gproji_beginnings[0], options);
+    result = options && options->smooth ? gproji_solve_smooth(form, iterations, options)
+                                        : gproji_attempt(form, iterations, 0, &gproji_beginnings[0], options);
     form->solve.finished = false;
     return result;
 }

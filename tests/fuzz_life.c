@@ -245,7 +245,7 @@ static gproj_solve_options gprojt_options(gprojt_life *c, bool *wrong) {
     options.tolerance = tolerances[gprojt_byte(c) % (c->wrong ? 8 : 6)];
     options.epsilon = epsilons[gprojt_byte(c) % (c->wrong ? 6 : 5)];
     options.skip_damping = flags & 1, options.skip_closeness = flags & 2, options.skip_guard = flags & 4;
-    options.nearest = (flags & 48) == 16, options.smooth = (flags & 48) == 32;
+    options.nearest = flags & 16, options.smooth = flags & 32;
     if (flags & 64) options.time_budget = c->wrong && flags & 128 ? -1 : 50;
     *wrong = c->wrong;
     return options;

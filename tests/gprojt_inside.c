@@ -35,7 +35,7 @@ bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, 
     return gproji_refuse_turned((void *)(uintptr_t)form, before, after);
 }
 
-bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b) { return gproji_ends_better(a, b); }
+double gprojt_inside_lack(const gproj_result *result) { return gproji_lack(result); }
 
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {
     return gproji_volume(mesh, position, height, gradient, NULL);

@@ -39,7 +39,7 @@ bool gprojt_inside_refuses(const gproj_form *form, const double *before, const d
 bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, const double *after);
 
 /* Is end a of an attempt better than b? */
-bool gprojt_inside_ends_better(const gproj_result *a, const gproj_result *b);
+double gprojt_inside_lack(const gproj_result *result);
 
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);

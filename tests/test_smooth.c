@@ -699,23 +699,25 @@ GPROJT_TEST(nothing_is_added_on_the_way_back) {
     }
 }
 
-/* Which of two ends counts: exact before all others, then whole, then near; the earlier one if they are equal. */
+/* Which of two ends counts: exact before all others, at a minimum or not, then whole, then near. */
 GPROJT_TEST(ends_are_compared) {
     static const struct {
         gproj_outcome outcome;
         int32_t spoiled;
-        double residual;
-    } better[6] = {{GPROJ_CONVERGED, 0, 1e-9}, {GPROJ_CONVERGED, 1, 1e-12},      {GPROJ_CONVERGED, 5, 0},
-                   {GPROJ_STALLED, 9, 1e-6},   {GPROJ_ITERATION_LIMIT, 0, 1e-5}, {GPROJ_STALLED, 0, 1e-2}};
-    gproj_result end[6];
+        double residual, optimality;
+    } better[8] = {{GPROJ_CONVERGED, 0, 1e-9, 0},       {GPROJ_CONVERGED, 1, 1e-12, 0},
+                   {GPROJ_ITERATION_LIMIT, 2, 1e-8, 7}, {GPROJ_CONVERGED, 5, 0, 0},
+                   {GPROJ_STALLED, 7, 0, HUGE_VAL},     {GPROJ_STALLED, 9, 1e-6, 1e-9},
+                   {GPROJ_ITERATION_LIMIT, 0, 1e-5, 0}, {GPROJ_STALLED, 0, 1e-2, 0}};
+    gproj_result end[8];
     int i, j;
     memset(end, 0, sizeof end);
-    for (i = 0; i < 6; ++i) {
+    for (i = 0; i < 8; ++i) {
         end[i].outcome = better[i].outcome, end[i].spoiled.total = better[i].spoiled;
-        end[i].residual = better[i].residual;
+        end[i].residual = better[i].residual, end[i].optimality = better[i].optimality, end[i].tolerance = 1e-8;
     }
-    for (i = 0; i < 6; ++i)
-        for (j = 0; j < 6; ++j) GPROJT_CHECK(gprojt_inside_ends_better(&end[i], &end[j]) == (i < j));
+    for (i = 0; i < 8; ++i)
+        for (j = 0; j < 8; ++j) GPROJT_CHECK((gprojt_inside_lack(&end[i]) < gprojt_inside_lack(&end[j])) == (i < j));
 }
 
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
@@ -880,7 +882,7 @@ static gproj_group_info gprojt_group_named(gproj_form *form, const char *name) {
     return info;
 }
 
-/* Both at once are nearest. */
+/* Both at once are nearest, where that gets there. */
 GPROJT_TEST(smooth_and_nearest_is_nearest) {
     gproj_mesh *mesh[2];
     int k;
@@ -897,6 +899,60 @@ GPROJT_TEST(smooth_and_nearest_is_nearest) {
     }
     GPROJT_CHECK(gprojt_unmoved(mesh[0], mesh[1]->position));
     gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
+/* The circular meshes nearest to these have lost edges. With smooth attempts everything holds on whole ones, also if
+   wishes would stay, and no minimum is claimed. */
+GPROJT_TEST(smooth_attempts_follow_the_nearest) {
+    int32_t n, wish;
+    for (n = 6; n <= 14; n += 4)
+        for (wish = 0; wish < 2; ++wish) {
+            gproj_mesh *mesh = gprojt_twisted(n, 0.2);
+            double *start = gprojt_keep(mesh);
+            gproj_solve_options options = gprojt_smooth();
+            gprojt_attempts seen = {0, 0, 0, true};
+            gproj_result result[2];
+            int32_t k;
+            options.nearest = true;
+            for (k = 0; k < 2; ++k) {
+                gproj_form *form = gproj_form_create(mesh, NULL);
+                gprojt_add_circular(form, NULL);
+                if (wish) gproj_set_schedule(form, gproj_add_closeness(form, 1), gproj_keep(1));
+                if (wish) gproj_set_schedule(form, gproj_add_fairness(form, 1), gproj_keep(0.1));
+                options.smooth = k == 1;
+                if (k == 1) options.on_iteration = gprojt_count_iterations, options.user = &seen;
+                result[k] = gproj_solve(form, 60, &options);
+                if (k == 1 && !wish) {
+                    options.on_iteration = NULL, options.nearest = false;
+                    GPROJT_CHECK(gproj_solve(form, 3, &options).outcome == GPROJ_CONVERGED);
+                }
+                gproj_form_destroy(form);
+                if (k == 0) gprojt_put_back(mesh, start);
+            }
+            GPROJT_CHECK(result[0].spoiled.total > 0 && result[0].attempts == 1);
+            GPROJT_CHECK(result[1].residual <= result[1].tolerance && result[1].spoiled.total == 0);
+            GPROJT_CHECK(result[1].outcome == GPROJ_ITERATION_LIMIT && result[1].optimality == HUGE_VAL);
+            GPROJT_CHECK(result[1].attempts > 1 && strstr(result[1].message, "which have only guided"));
+            GPROJT_CHECK(seen.ascending && seen.last <= 240 && result[1].iterations <= seen.last);
+            free(start);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
+/* Where nothing helps the attempt that looked for the nearest mesh is one of four, and any may count. */
+GPROJT_TEST(attempts_after_the_nearest) {
+    gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+    gproj_solve_options options = gprojt_smooth();
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_result result;
+    gprojt_add_impossible(form, mesh);
+    options.nearest = true;
+    result = gproj_solve(form, 60, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED || result.outcome == GPROJ_ITERATION_LIMIT);
+    GPROJT_CHECK(result.attempts == 4 && strstr(result.message, "none of 4 attempts ended better"));
+    GPROJT_CHECK(result.residual > result.tolerance && result.iterations <= 240);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 /* Without closeness, which measures the steps, there is no metric; without equilibrium the one of forces rests. */
@@ -1183,6 +1239,8 @@ int main(void) {
     GPROJT_RUN(forged_corners_are_refused);
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(smooth_and_nearest_is_nearest);
+    GPROJT_RUN(smooth_attempts_follow_the_nearest);
+    GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(metrics_come_and_go);
     GPROJT_RUN(metrics_measure_all);
     GPROJT_RUN(points_are_solved);

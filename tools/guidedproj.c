@@ -1706,14 +1706,16 @@ static const tool_option options[] = {
 
     {"nearest", "",
      "end at the nearest mesh that satisfies everything; where something is wished, at the one that serves the wishes "
-     "best: they keep their weights W to the end",
+     "best: they keep their weights W to the end. If none is found on a whole mesh, they only guide, as without it",
      set_flag, SETS(nearest), .section = "how"},
     {"plain", "",
      "steps as gproj_solve takes them without options: not smooth, wishes without N guide for half of the iterations, "
      "and --move pulls without a drag",
      set_flag, SETS(plain)},
-    {"iterations", "N", "at most so many (200, most take about 10; with --nearest 60, with --plain 20)", set_iterations,
-     SETS(iterations)},
+    {"iterations", "N",
+     "at most so many (200, most take about 10; with --plain 20, with --nearest 60, and three times as many where no "
+     "nearest mesh is found)",
+     set_iterations, SETS(iterations)},
     {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
     {"epsilon", "E", "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", set_positive,
      SETS(epsilon)},
@@ -2362,10 +2364,12 @@ static void show_progress(tool *t, const gproj_iteration *iteration) {
     if (t->quiet) return;
     for (i = 0; i < GPROJ_PHASE_COUNT; ++i) seconds += iteration->seconds[i];
     if (isatty(2)) {
-        int full = (int)((int64_t)WIDTH * iteration->number / t->iterations);
+        int64_t limit =
+            (int64_t)t->iterations * (iteration->number > t->iterations ? 2 : 1); /* --nearest begins again */
+        int full = (int)(WIDTH * iteration->number / limit);
         fputs("\r[", stderr);
         for (i = 0; i < WIDTH; ++i) fputc(i < full ? '#' : '.', stderr);
-        fprintf(stderr, "] %ld/%ld  residual %.1e ", (long)iteration->number, (long)t->iterations, iteration->residual);
+        fprintf(stderr, "] %ld/%ld  residual %.1e ", (long)iteration->number, (long)limit, iteration->residual);
         t->bar = true;
     } else
         fprintf(stderr, "iteration %ld: residual %.2e, step %.2e, energy %.2e, %.1f ms\n", (long)iteration->number,
@@ -2376,7 +2380,7 @@ static void show_progress(tool *t, const gproj_iteration *iteration) {
 static bool on_iteration(void *user, gproj_system *system, const gproj_iteration *iteration) {
     tool *t = (tool *)user;
     show_progress(t, iteration);
-    if (!t->history.probe || t->history.record_count >= t->iterations) return true;
+    if (!t->history.probe) return true;
     return gprojx_history_keep(&t->history, t->form, system, iteration) || fail_memory(t);
 }
 
@@ -2567,7 +2571,7 @@ static bool solve(tool *t) {
                                      .epsilon = t->epsilon,
                                      .time_budget = t->time_limit,
                                      .skip_closeness = unguided,
-                                     .smooth = !unguided && !t->nearest && !t->plain,
+                                     .smooth = !unguided && !t->plain,
                                      .nearest = t->nearest,
                                      .on_iteration = on_iteration,
                                      .user = t};

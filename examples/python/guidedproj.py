@@ -1617,11 +1617,11 @@ class Form(_Sticky):
     def solve(self, iterations=None, callback=None, **options):
         """Solves (gproj_solve) and returns a record of gproj_result; the positions are then in form.V.
 
-        iterations: by default 200 if smooth, 30 if nearest, else 20. callback(iteration) gets a record of gproj_iteration
+        iterations: by default 60 if nearest, 200 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
         after each, and returns False to cancel. Options, as in gproj_solve_options: smooth, nearest, tolerance, epsilon,
         time_budget, skip_damping, skip_closeness, skip_guard. Raises Error only where the outcome is FAILED."""
         if iterations is None:
-            iterations = 30 if options.get("nearest") else 200 if options.get("smooth") else 20
+            iterations = 60 if options.get("nearest") else 200 if options.get("smooth") else 20
         options, callback = _solve_options(callback, options)
         with self._c.calling(), _interruptible():
             result = _lib().gproj_solve(self._c, iterations, byref(options))
