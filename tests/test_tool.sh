@@ -375,6 +375,14 @@ want "--planar --nearest" turned 0
 want "--planar --nearest, less than by default" deviation_rms "$far"
 [ "$(grep -c '"optimality": ' near.json)" -gt 3 ] && pass || fail "the report does not tell how near the nearest is"
 expect 2 "nothing to be near to" grid.obj -o new.obj --planar --closeness 0 --nearest
+awk 'BEGIN { # the circular meshes nearest to this one have lost edges
+    for (j = 0; j <= 6; j++) for (i = 0; i <= 6; i++) { x = i / 6; y = j / 6
+        printf "v %.6f %.6f %.6f\n", x, y, 0.2 * (sin(4 * x + 1) * cos(3 * y) + 2 * x * y) }
+    for (j = 0; j < 6; j++) for (i = 0; i < 6; i++) { a = 7 * j + i + 1; print "f", a, a + 1, a + 8, a + 7 } }' >twisted.obj
+run twisted.obj -o near.obj --planar --circular --nearest --report near.json
+[ $status -eq 0 ] && grep -q "have only guided" out.txt && grep -q '"optimality": null' near.json && pass ||
+    fail "--nearest without a whole mesh at a minimum exits with $status: $(cat out.txt)"
+[ "$(grep -c '"epsilon": ' near.json)" -gt 52 ] && pass || fail "the report has not all iterations of all attempts"
 run grid.obj -o near.obj --planar --closeness 0 --fairness 0.2*0.5:3 --fix boundary --nearest
 [ $status -eq 0 ] && grep -q "projected gradient" out.txt && pass || fail "--fairness --nearest exits with $status"
 run grid.obj -o wish.obj --fairness 0.2
