@@ -619,7 +619,7 @@ enum {
 };
 
 typedef struct gproj_group {
-    const char *name; /* for reports, e.g. "planarity"; copied, cut to GPROJ_NAME_SIZE */
+    const char *name; /* for reports, e.g. "planarity"; copied, cut to whole characters in GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
        which costs half a solve more per row. */
@@ -2610,10 +2610,12 @@ GPROJ_API const char *gproj_code_string(gproj_code code) {
     return "unknown error";
 }
 
-/* Appends to a text that stays NUL-terminated, and cuts the piece if it does not fit. Returns the new length. */
+/* Appends to a text that stays NUL-terminated, and cuts the piece at a whole character of UTF-8 if it does not fit.
+   Returns the new length. */
 GPROJI_INTERNAL size_t gproji_append(char *text, size_t size, size_t length, const char *piece, size_t piece_length) {
     size_t room = size - 1 - length;
-    if (piece_length > room) piece_length = room;
+    if (piece_length > room)
+        for (piece_length = room; piece_length > 0 && (piece[piece_length] & 0xc0) == 0x80;) --piece_length;
     memcpy(text + length, piece, piece_length);
     text[length + piece_length] = 0;
     return length + piece_length;
@@ -6336,6 +6338,8 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     if (n > 0 && start[n] > INT64_MAX / 64)
         return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "%l entries are too many", start[n]);
     if (n > 0 && !row && start[n] > 0) return gproji_refuse(&c->error, "the row indices are missing");
+    if (options && (options->ordering < GPROJ_ORDERING_BEST || options->ordering > GPROJ_ORDERING_NATURAL))
+        return gproji_refuse(&c->error, "ordering %d is none of gproj_ordering", (int32_t)options->ordering);
     for (j = 0; j < n; ++j)
         for (p = start[j]; p < start[j + 1]; ++p)
             if (row[p] < 0 || row[p] >= n)
@@ -8133,7 +8137,7 @@ GPROJI_INTERNAL gproj_code gproji_check_schedule(gproj_system *s, const char *na
 
 GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *group) {
     gproji_group *g;
-    size_t count, length;
+    size_t count;
     if (!gproji_system_is_open(s)) return -1;
     if (!group || !group->name) {
         gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
@@ -8159,8 +8163,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         return -1;
     }
     memset(&g->row[0], 0, sizeof g->row[0]); /* at which the locals of an empty group end */
-    length = strlen(group->name);
-    memcpy(g->name, group->name, length < GPROJ_NAME_SIZE ? length : GPROJ_NAME_SIZE - 1); /* cuts longer names */
+    gproji_append(g->name, sizeof g->name, 0, group->name, strlen(group->name));
     g->kind = group->kind;
     g->place = group->place;
     g->global = group->global;

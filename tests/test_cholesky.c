@@ -960,6 +960,9 @@ GPROJT_TEST(cholesky_arguments) {
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, row, &given) == GPROJ_ERROR_ARGUMENT);
     given.permutation = beyond;
     GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, row, &given) == GPROJ_ERROR_ARGUMENT);
+    given.ordering = (gproj_ordering)17;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 2, start, row, &given) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "ordering 17"));
     GPROJT_CHECK(gproj_cholesky_permutation(c) == NULL);
     GPROJT_CHECK(gproj_cholesky_get_info(c).columns == 0);
     /* and after all that it works */

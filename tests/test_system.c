@@ -107,6 +107,8 @@ GPROJT_TEST(group_info) {
     GPROJT_CHECK(!strcmp(info.name, "a name of more than thirty-one ") && info.kind == GPROJ_WISH &&
                  info.worst_row == -1);
     GPROJT_CHECK(info.rms == 0 && gproj_system_group_count(s) == 2 && gproj_system_variable_count(s) == 3);
+    gprojt_add_group(s, "thirty bytes, and then one of \xe2\x82\xac and more", GPROJ_WISH, 0.5); /* a euro sign */
+    GPROJT_CHECK(!strcmp(gproj_system_group_info(s, 2).name, "thirty bytes, and then one of "));
     gproj_system_destroy(s);
 }
 
