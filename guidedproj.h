@@ -23770,9 +23770,11 @@ GPROJI_INTERNAL double gproji_lack(const gproj_result *result) {
     return 1 - 1 / (1 + (double)result->spoiled.total);
 }
 
-/* Puts the variables at `end`, where an attempt has ended, and everything that is said of them. */
-GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end) {
+/* Puts the variables at `end`, where an attempt has ended with loads of this scale, and everything that is said of
+   them. */
+GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, double load_scale) {
     gproji_part *part;
+    if (form->statics) form->statics->load_scale = load_scale;
     /* What refreshes keep, such as segments of curves, is of later attempts. */
     for (part = form->part; part; part = part->next)
         if (part->rule->acts && part->rule->acts->refresh && part->rule->acts->start) part->rule->acts->start(part);
@@ -23796,7 +23798,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     double *start = (double *)gproji_take(&form->heap, count, sizeof *start);
     double *end =
         (double *)gproji_take(&form->heap, count, sizeof *end); /* of the best attempt, if it was not the last */
-    double begun = gproji_now(s);
+    double begun = gproji_now(s), load_scale = 1;               /* there, too */
     bool started = form->statics && form->statics->started, here = true, away = false;
     gproj_solve_options how = *options;
     gproji_beginning beginning = gproji_beginnings[0];
@@ -23831,6 +23833,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         beginning = gproji_beginnings[k];
         beginning.fading = options->nearest;
         if (here) memcpy(end, x, count * sizeof *end);
+        if (here && form->statics) load_scale = form->statics->load_scale;
         gproji_reset_mesh(form);
         memcpy(x, start, count * sizeof *start);
         if (form->statics) form->statics->started = started;
@@ -23847,7 +23850,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (here) result = other, away = options->nearest;
     }
     result.attempts = attempt;
-    if (!here) gproji_return_to(form, end);
+    if (!here) gproji_return_to(form, end, load_scale);
     if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0) {
         size_t length = strlen(result.message);
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",

@@ -471,7 +471,8 @@ static bool gprojt_on_form_iteration(void *user, gproj_system *s, const gproj_it
     return gproj_system_error(s)->code == GPROJ_OK;
 }
 
-/* What may be refused: the Gauss image before planarity, and vertices and targets that are too far away. */
+/* What may be refused: the Gauss image before planarity, vertices and targets that are too far away, and loads on
+   vertices without edges. */
 static void gprojt_check_refusal(const gprojt_case *c, const gproj_error *error) {
     double centre[3], scale;
     bool known = error->code == GPROJ_ERROR_STATE, beyond = c->beyond;
@@ -480,6 +481,8 @@ static void gprojt_check_refusal(const gprojt_case *c, const gproj_error *error)
     for (i = 0; i < 3 * c->mesh->vertex_count; ++i)
         beyond = beyond || scale * fabs(c->mesh->position[i] - centre[i % 3]) > 1e20;
     known = known || (beyond && error->code == GPROJ_ERROR_NUMBER);
+    known = known || (error->place == GPROJ_PLACE_VERTEX && strstr(error->message, "no edge that could carry it") &&
+                      c->mesh->vertex_halfedge[error->index] < 0);
     if (!known) fprintf(stderr, "%s\n", error->message);
     GPROJT_MUST(known);
 }
@@ -512,7 +515,8 @@ static void gprojt_solve_once(gprojt_case *c, bool memory_fails) {
         GPROJT_MUST(!wrong && gproj_form_error(c->form)->code == GPROJ_OK && !strstr(result.message, "nan"));
         GPROJT_MUST(result.residual >= 0 && result.step >= 0 && result.step < HUGE_VAL);
     }
-    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK) gprojt_check_refusal(c, gproj_form_error(c->form));
+    if (!memory_fails && gproj_form_error(c->form)->code != GPROJ_OK)
+        gprojt_check_refusal(c, gproj_form_error(c->form));
     GPROJT_MUST(result.outcome != GPROJ_CONVERGED || (result.residual <= result.tolerance));
     if (result.outcome == GPROJ_CONVERGED) gprojt_check_converged(c, &result);
     free(before);
