@@ -1144,6 +1144,10 @@ GPROJT_TEST(every_allocation_fails_once) {
     mesh = gprojt_twisted(3, 0.3);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_solve_twice, mesh) >= 30);
     gproj_mesh_destroy(mesh);
+    mesh = gprojt_twisted(2, 0.3);
+    options.nearest = true; /* and then smooth */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 3, &options) >= 30);
+    gproj_mesh_destroy(mesh);
 }
 
 /* A state saved amid a smooth or a nearest solve, or one with weights and coefficients of its own, comes into a fresh
