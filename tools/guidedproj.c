@@ -1713,8 +1713,8 @@ static const tool_option options[] = {
      "and --move pulls without a drag",
      set_flag, SETS(plain)},
     {"iterations", "N",
-     "at most so many (200, most take about 10; with --plain 20, with --nearest 60, and three times as many where no "
-     "nearest mesh is found)",
+     "at most so many (200, most take about 10; with --plain 20, with --nearest 60, and up to three times as many "
+     "more where none is found)",
      set_iterations, SETS(iterations)},
     {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
     {"epsilon", "E", "constant regularisation of the steps (follows the residual, 1e-5 to 1e-3)", set_positive,
@@ -2364,8 +2364,8 @@ static void show_progress(tool *t, const gproj_iteration *iteration) {
     if (t->quiet) return;
     for (i = 0; i < GPROJ_PHASE_COUNT; ++i) seconds += iteration->seconds[i];
     if (isatty(2)) {
-        int64_t limit =
-            (int64_t)t->iterations * (iteration->number > t->iterations ? 2 : 1); /* --nearest begins again */
+        bool later = iteration->number > t->iterations; /* attempts after --nearest, with three times as many */
+        int64_t limit = (int64_t)t->iterations * (later ? 4 : 1);
         int full = (int)(WIDTH * iteration->number / limit);
         fputs("\r[", stderr);
         for (i = 0; i < WIDTH; ++i) fputc(i < full ? '#' : '.', stderr);
