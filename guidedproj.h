@@ -1326,7 +1326,10 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 /* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
    c_k on the circle's axis with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are variables
    that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k. A face with a doubled
-   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them). */
+   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them). It must
+   where the boundary stays and its corners have the wrong angles: vertices of quads can be coloured like the squares of
+   a chessboard, and in a convex quad with a circumcircle the two angles of each colour add up to 180 degrees, so over
+   the mesh both colours have the same sum. The verdict tells if they cannot. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
 /* The face planes around a vertex touch a common cone: their unit normals n_i make one angle with the cone's axis a_v,
    a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows put the axis into the bisecting planes
@@ -10976,10 +10979,18 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
     return low;
 }
 
-/* The merit at x, by values alone. */
-GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
+/* Gives local unknowns, normals and axes, their best values for x. */
+GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
+    if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
+}
+
+/* The true merit at x, the end of a step that may be taken back; rows are linearised there. */
+GPROJI_INTERNAL double gproji_try_merit(gproj_system *s) {
     double sum = 0;
     int32_t i, r;
+    s->progress.trial = true;
+    gproji_refresh_groups(s);
+    s->progress.trial = false;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->weight > 0 && g->role < GPROJI_METRIC && r < g->row_count; ++r) {
@@ -10990,19 +11001,6 @@ GPROJI_INTERNAL double gproji_merit_here(const gproj_system *s) {
         }
     }
     return sum;
-}
-
-/* Gives local unknowns, normals and axes, their best values for x. */
-GPROJI_INTERNAL void gproji_settle(gproji_loop *loop) {
-    if (loop->hooks.settle) loop->hooks.settle(loop->hooks.user, loop->system->x);
-}
-
-/* The true merit at x, the end of a step that may be taken back; rows are linearised there. */
-GPROJI_INTERNAL double gproji_try_merit(gproj_system *s) {
-    s->progress.trial = true;
-    gproji_refresh_groups(s);
-    s->progress.trial = false;
-    return gproji_merit_here(s);
 }
 
 /* Linearises rows at x, the end of t times the step with local unknowns settled, and returns the true merit. If that is
@@ -16646,21 +16644,21 @@ GPROJI_INTERNAL double gproji_vertex_conicality(gproji_normals *normals, int32_t
     return most - least;
 }
 
-/* |w1 - w2 + w3 - w4| for the four faces' angles around an interior vertex: 0 if they touch a cone, but anything where
-   the vertex is flat, though its normals do not show it. 0 at vertices of other valences. */
-GPROJI_INTERNAL double gproji_angle_imbalance(const gproj_mesh *mesh, int32_t vertex) {
-    double a[3], b[3], cross[3], sum = 0;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, sign = 1;
-    if (gproj_mesh_valence(mesh, vertex) != 4) return 0;
+/* The angles of the faces around a vertex, w1 + w2 + w3 + ..., or w1 - w2 + w3 - ..., in radians. */
+GPROJI_INTERNAL double gproji_angle_sum(const gproj_mesh *mesh, const double *x, int32_t vertex, bool alternating) {
+    const double *middle = x + 3 * (size_t)vertex;
+    double a[3], b[3], cross[3], sum = 0, sign = 1;
+    int32_t start = mesh->vertex_halfedge[vertex], h = start;
     do {
         int32_t next = gproji_rotate(mesh, h);
-        gproji_sub3(gproji_corner_position(mesh, h ^ 1), gproji_corner_position(mesh, h), a);
-        gproji_sub3(gproji_corner_position(mesh, next ^ 1), gproji_corner_position(mesh, h), b);
+        gproji_sub3(x + 3 * (size_t)mesh->origin[next ^ 1], middle, a);
+        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], middle, b);
         gproji_cross3(a, b, cross);
-        sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
-        sign = -sign, h = next;
+        if (mesh->face[h] >= 0) sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
+        sign = alternating ? -sign : 1;
+        h = next;
     } while (h != start);
-    return fabs(sum);
+    return sum;
 }
 
 /* The area that the normals around an interior vertex span: triangles from their mean, all counted positive; 0 at the
@@ -22823,9 +22821,9 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
 
    The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
    equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
-   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes: of flat faces), and which damage was done on
-   the way (gproji_tell_spoiled). Each function below appends a clause to the sentence, or nothing. They run when a
-   solve has ended, so the system's step and saved x are free for work. */
+   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes: of flat faces; gproji_tell_angles: of
+   circular ones), and which damage was done on the way (gproji_tell_spoiled). Each function below appends a clause to
+   the sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -22907,7 +22905,8 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
             size_t v = 3 * (size_t)part->element[i];
-            if (gproji_curve_at(part, i)) continue;
+            if (gproji_curve_at(part, i) || !(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0))
+                continue;
             for (k = 0; k < 3; ++k) held[v + (size_t)k] = 1;
             gproji_copy3(form->original + v, value + v);
         }
@@ -23097,16 +23096,11 @@ GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, co
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
     size_t length = strlen(result->message);
-    int32_t v, f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
+    int32_t f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
     double off = 0;
     gproji_spread s;
     memset(&s, 0, sizeof s);
     s.form = form, s.held = held, s.value = value;
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        double *of = held + 3 * (size_t)v;
-        of[0] = of[0] + of[1] + of[2] == 3;
-        of[1] = of[2] = 0;
-    }
     if (statics) gproj_get_loads(form, statics->work, NULL);
     for (f = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] < 4) continue;
@@ -23129,14 +23123,82 @@ GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, co
                       loaded_face, loaded);
 }
 
+/* Angles of circles. In a convex polygon with a circumcircle and an even number of corners the angles at every other
+   corner have half of the sum. So where the vertices can be coloured as a chessboard's squares are, the angles around
+   those of one colour and around those of the other add up to the same. Inside, a smooth surface has 2 pi around a
+   vertex, and a boundary that is held or glides along itself keeps the angles there: the two sums are then those of
+   the beginning. If they differ, as by a corner of 60 degrees in a grid whose number of faces along a side is odd, all
+   faces can only be circular where some collapse or cross themselves. */
+
+/* Says by how much the two sums differ for a part of the mesh, and which vertex has the largest share in that. Returns
+   whether they do. Here held[3 v] says whether vertex v is held; [3 v + 1] becomes the colour, 1 or -1, and [3 k + 2]
+   the k-th vertex of a queue. */
+GPROJI_INTERNAL bool gproji_tell_angles(const gproj_form *form, double *held, gproj_result *result) {
+    static const double noticeable = 0.1; /* radians; less may be the curvature */
+    const gproj_mesh *mesh = form->mesh;
+    const gproji_part *part;
+    size_t length = strlen(result->message);
+    double most = noticeable;
+    int32_t loose = 0, vertex = -1, count = 0, faces, v, i;
+    /* 1. Every face is circular, and no boundary vertex is free. */
+    if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return false;
+    for (v = 0; v < mesh->vertex_count; ++v)
+        loose += gproj_mesh_is_boundary_vertex(mesh, v) && !(held[3 * (size_t)v] > 0);
+    for (part = form->part; part; part = part->next) {
+        const gproji_group *g = gproji_group_at(form->system, part->group);
+        for (i = 0; part->rule == &gproji_circularity_rule && i < g->row_count; ++i)
+            if (!(g->row[i].weight > 0)) return false;
+        if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
+        for (i = 0; i < part->count; ++i)
+            loose -= g->row[3 * i].weight > 0 && !(held[3 * (size_t)part->element[i]] > 0);
+    }
+    if (loose > 0) return false;
+    /* 2. Each part of the mesh is coloured from one vertex on. Regular faces have the same sums, so only what a vertex
+       has more than in these is summed. With a face that has an odd number of corners there are no such colours. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double sum = 0, largest[2] = {0, 0};
+        int32_t head = count, at[2] = {-1, -1};
+        if (held[3 * (size_t)v + 1] != 0 || mesh->vertex_halfedge[v] < 0) continue;
+        held[3 * (size_t)v + 1] = 1;
+        for (held[3 * (size_t)count++ + 2] = v; head < count; ++head) {
+            int32_t u = (int32_t)held[3 * (size_t)head + 2], start = mesh->vertex_halfedge[u], h = start, side;
+            double colour = held[3 * (size_t)u + 1], more = gproji_angle_sum(mesh, form->original, u, false);
+            do {
+                int32_t w = mesh->origin[h ^ 1], face = mesh->face[h];
+                double *other = &held[3 * (size_t)w + 1];
+                if (face >= 0) more -= GPROJI_PI * (1 - 2.0 / mesh->face_degree[face]);
+                if (*other == colour) return false;
+                if (*other == 0) held[3 * (size_t)count++ + 2] = w;
+                *other = -colour;
+                h = gproji_rotate(mesh, h);
+            } while (h != start);
+            more *= colour;
+            sum += more;
+            side = more < 0;
+            if (fabs(more) > largest[side]) largest[side] = fabs(more), at[side] = u;
+        }
+        if (fabs(sum) > most) most = fabs(sum), vertex = at[sum < 0];
+    }
+    if (vertex < 0) return false;
+    faces = gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
+    gproji_format(
+        result->message + length, sizeof result->message - length,
+        "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
+        "but with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): let vertices of "
+        "the boundary go, or insert a strip of faces",
+        floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
+    return true;
+}
+
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
    would not explain it. Returns whether there is such a face. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
-    int32_t f, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
-    for (f = 0; gproji_is_on(form, form->planarity) && f < form->mesh->face_count; ++f) {
+    int32_t f, v, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
+    bool planar = gproji_is_on(form, form->planarity);
+    for (f = 0; planar && f < form->mesh->face_count; ++f) {
         int32_t count;
         double bend = gproji_held_bend(form->mesh, held, value, f, &count);
         if (!(bend > noticeable)) continue;
@@ -23152,8 +23214,14 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
     else if (all == form->mesh->vertex_count)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
-    else if (gproji_is_on(form, form->planarity))
-        gproji_tell_planes(form, held, value, result);
+    else if (planar) {
+        for (v = 0; v < form->mesh->vertex_count; ++v) { /* one number for each vertex, and room for two */
+            double *of = held + 3 * (size_t)v;
+            of[0] = of[0] + of[1] + of[2] == 3;
+            of[1] = of[2] = 0;
+        }
+        if (!gproji_tell_angles(form, held, result)) gproji_tell_planes(form, held, value, result);
+    }
     return bent > 0;
 }
 
@@ -23389,13 +23457,16 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
                       count, count == 1 ? " is" : "s are", face, worst);
 }
 
-/* Says at which vertices the angles do not add up: with coplanar normals the rows of a cone hold with any angles. */
+/* Says at which vertices the four faces' angles do not add up as on a cone, w1 + w3 = w2 + w4: with coplanar normals
+   the rows of a cone hold with any angles. */
 GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
     double worst = 1e-6;
     size_t length = strlen(result->message);
     int32_t v, vertex = -1, count = 0;
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
-        double off = form->cone[v] >= 0 ? gproji_angle_imbalance(form->mesh, v) : 0;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        bool four = form->cone[v] >= 0 && gproj_mesh_valence(mesh, v) == 4;
+        double off = four ? fabs(gproji_angle_sum(mesh, mesh->position, v, true)) : 0;
         count += off > 1e-6;
         if (off > worst) worst = off, vertex = v;
     }

@@ -1253,6 +1253,63 @@ GPROJT_TEST(planes_that_meet_one_vertex) {
     }
 }
 
+/* A sheared grid with m by n faces, a bump inside and, if `split`, its first face cut into triangles; added to a soup. */
+static void gprojt_add_sheared(gprojt_soup *soup, int32_t m, int32_t n, bool split, double y) {
+    int32_t first = soup->vertex_count, i, j, face[4];
+    for (j = 0; j <= n; ++j)
+        for (i = 0; i <= m; ++i)
+            gprojt_add_vertex(soup, i + 0.3 * j, y + j, 6.0 * i * (m - i) * j * (n - j) / (m * m * n * n));
+    for (j = 0; j < n; ++j)
+        for (i = 0; i < m; ++i) {
+            face[0] = first + j * (m + 1) + i, face[1] = face[0] + 1, face[2] = face[1] + m + 1, face[3] = face[2] - 1;
+            if (!split || i + j > 0) {
+                gprojt_add_face(soup, 4, face);
+                continue;
+            }
+            gprojt_add_face(soup, 3, face);
+            face[1] = face[2], face[2] = face[3];
+            gprojt_add_face(soup, 3, face);
+        }
+}
+
+/* The corners of a sheared grid with odd numbers of faces have angles that leave no circular faces with a boundary that
+   stays: 2 (90 - 73.3) degrees of either colour too little and too much. With an even number, a free corner, a face that
+   need not be circular or a triangle there is no such reason. */
+GPROJT_TEST(angles_of_circles_are_named) {
+    static const char name[] = "with this boundary the sums differ by 67 degrees, most by vertex";
+    static const int32_t corner[1] = {7};
+    static const double none[1] = {0};
+    int k;
+    for (k = 0; k < 8; ++k) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_solve_options options;
+        gproj_result result;
+        int32_t circular, held;
+        bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6;
+        memset(&soup, 0, sizeof soup);
+        memset(&options, 0, sizeof options);
+        gprojt_add_sheared(&soup, 7, k == 1 ? 8 : 7, k == 5, 0);
+        if (k == 6) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        if (k != 7) gproj_add_planarity(form, 1);
+        circular = gproj_add_circularity(form, 1);
+        held = k == 3 ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
+        if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);
+        if (k == 4) gproj_set_element_weights(form, circular, 1, corner, none);
+        options.smooth = true;
+        result = gproj_solve(form, 60, &options);
+        GPROJT_CHECK((strstr(result.message, name) != NULL) == named);
+        if (named) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
+        if (named) GPROJT_CHECK(strstr(result.message, " (1 face): let vertices of the boundary go") != NULL);
+        if (whole) GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Equilibrium with the boundary as supports, or all vertices. */
 static void gprojt_add_supported(gproj_form *form, const gproj_mesh *mesh, const gproj_loads *loads, bool all) {
     gproj_supports supports;
@@ -3046,6 +3103,7 @@ int main(void) {
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(planes_that_meet_one_vertex);
+    GPROJT_RUN(angles_of_circles_are_named);
     GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(rings_that_glide_in_a_plane);
     GPROJT_RUN(carriers_in_a_plane_are_not_named);

@@ -611,6 +611,20 @@ awk 'NR == 41 { good = ($2-4)^2 + ($3-4)^2 + ($4-1.5)^2 < 1e-18 } NR == 1 { firs
 run grid.obj -o gliding.obj --planar --glide boundary --move 4,-0.2,4,0.5 --iterations 30
 awk 'NR == 5 { exit !(($2+0.2)^2 + ($3-4)^2 + ($4-0.5)^2 < 1e-18) }' gliding.obj && pass ||
     fail "--move of a gliding vertex"
+# A corner that is free moves, and nothing else of the boundary; where it glides, circular faces need that in a sheared grid.
+run grid.obj -o free.obj --planar --fix boundary --free 8 --iterations 30
+awk '$1 == "v" && NR == FNR { x[++n] = $2; y[n] = $3; z[n] = $4 }
+    $1 == "v" && NR > FNR { m++; i = (m - 1) % 9; j = (m - 1 - i) / 9; d = ($2-x[m])^2 + ($3-y[m])^2 + ($4-z[m])^2
+        if (m == 9) freed = d > 1e-12; else if (i % 8 == 0 || j % 8 == 0) held += d < 1e-18 }
+    END { exit !(freed && held == 31) }' grid.obj free.obj && pass || fail "--fix boundary --free 8"
+awk 'BEGIN { for (j = 0; j < 8; j++) for (i = 0; i < 8; i++) print "v", i + 0.3 * j, j, i * (7 - i) * j * (7 - j) / 400
+    for (j = 0; j < 7; j++) for (i = 1; i < 8; i++) print "f", 8 * j + i, 8 * j + i + 1, 8 * j + i + 9, 8 * j + i + 8 }' >sheared.obj
+run sheared.obj -o free.obj --planar --circular --glide boundary --free 7
+[ $status -eq 0 ] && pass || fail "--glide boundary --free 7: $status"
+run sheared.obj -o free.obj --planar --circular --glide boundary
+[ $status -eq 1 ] && grep -q "the sums differ by 67 degrees" out.txt err.txt && pass || fail "angles of a sheared boundary: $status"
+expect 2 "is about --fix and --glide" grid.obj -o new.obj --planar --free 3
+expect 2 "there is no vertex 81" grid.obj -o new.obj --planar --fix boundary --free 81
 awk -v h=0.6 "$height"'BEGIN {
     for (k = 0; k < 32; k++) {
         if (k < 8) { i = k; j = 0 } else if (k < 16) { i = 8; j = k - 8 }

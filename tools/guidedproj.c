@@ -125,7 +125,7 @@ typedef struct tool {
     double weld;      /* in mean edge lengths */
     gprojx_encoding encoding;
     tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
-        supports, reference, closeness, equal_areas;
+        supports, loose, reference, closeness, equal_areas;
     tool_demand own[MOST_OPTIONS];   /* by row: options that only their builders read */
     double length_price, area_price; /* --cost */
     double density, area_load, snow;
@@ -178,6 +178,7 @@ typedef struct tool {
     double *imbalance_before, *imbalance; /* each face's load that the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
     bool *is_support;
+    bool *is_loose;  /* which vertices --free names; NULL: it is not given */
     uint8_t *slides; /* by vertex: the free axes of rollers; NULL: there are none */
     gproj_forces forces;
     gproj_measures before, after;
@@ -443,7 +444,7 @@ static bool set_loads_file(tool *t, void *place, const char *name, const char *v
     return set_path(t, place, name, value);
 }
 
-static bool set_supports(tool *t, void *place, const char *name, const char *value) {
+static bool set_vertices(tool *t, void *place, const char *name, const char *value) {
     (void)t, (void)name;
     ((tool_demand *)place)->text = value;
     ((tool_demand *)place)->length = strlen(value);
@@ -751,6 +752,7 @@ static bool prepare_outputs(tool *t) {
             if (!keep_apart(t, output, t->glide[j].text, t->glide[j].length)) return false;
         if (t->loads && !keep_apart(t, output, t->loads, strlen(t->loads))) return false;
         if (t->supports.text && !keep_apart(t, output, t->supports.text, t->supports.length)) return false;
+        if (t->loose.text && !keep_apart(t, output, t->loose.text, t->loose.length)) return false;
         if (t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length)) return false;
     }
     return true;
@@ -1235,8 +1237,10 @@ static bool read_mesh(tool *t) {
 
 /* ---- builders: each adds what an option asks for to the form ---- */
 
-static bool is_moved(const tool *t, int32_t vertex) {
+/* Do --fix and --glide leave this vertex out? */
+static bool is_free(const tool *t, int32_t vertex) {
     int32_t i;
+    if (t->is_loose && t->is_loose[vertex]) return true;
     for (i = 0; i < t->move_count; ++i)
         if (t->move[i].vertex == vertex && t->move[i].weight > 0) return true;
     return false;
@@ -1285,7 +1289,16 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
     return good;
 }
 
-/* Adds one group for each --fix, without vertices that a --move takes. */
+/* Notes which vertices --fix and --glide are to leave out. */
+static int32_t add_loose(tool *t, const tool_demand *demand) {
+    if (t->fix_count + t->glide_count == 0)
+        return fail(t, EXIT_USAGE, "--free is about --fix and --glide: add one of these"), -1;
+    t->is_loose = (bool *)take(t, (size_t)t->mesh->vertex_count, sizeof *t->is_loose);
+    if (t->is_loose) mark_vertices(t, "--free", demand, t->is_loose);
+    return -1;
+}
+
+/* Adds one group for each --fix, without vertices that are free. */
 static int32_t add_fixed(tool *t, const tool_demand *none) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     bool *mark = (bool *)take(t, vertices, sizeof *mark);
@@ -1306,7 +1319,7 @@ static int32_t add_fixed(tool *t, const tool_demand *none) {
             break;
         }
         for (count = i = 0; i < t->mesh->vertex_count; ++i)
-            if (mark[i] && !is_moved(t, i)) list[count++] = i;
+            if (mark[i] && !is_free(t, i)) list[count++] = i;
         if (count > 0 && t->fix[k].weight > 0) gproj_add_fixed(t->form, count, list, t->fix[k].weight);
     }
     free(mark), free(list);
@@ -1343,7 +1356,7 @@ static bool glide_along(tool *t, int32_t first, double weight) {
     for (i = 0; good && i < t->mesh->vertex_count; ++i) {
         double distance;
         owner[i] = -1;
-        if (!gproj_mesh_is_boundary_vertex(t->mesh, i) || is_moved(t, i)) continue;
+        if (!gproj_mesh_is_boundary_vertex(t->mesh, i) || is_free(t, i)) continue;
         owner[i] = nearest_curve(t, first, t->curve_count, t->original + 3 * i, &distance);
         if (gproj_form_is_corner(t->form, i) && distance <= 1e-6 * t->before.mean_edge) owner[i] = stays;
     }
@@ -1362,12 +1375,13 @@ static bool glide_along(tool *t, int32_t first, double weight) {
 
 static bool add_gliding(tool *t, const tool_demand *word) {
     int32_t first = t->curve_count, i;
-    bool moved = false, good;
+    bool all = true, good;
     if (same_word(word->text, word->length, "boundary")) {
         if (t->mesh->loop_count == 0)
             return fail(t, EXIT_USAGE, "--glide boundary: the mesh is closed and has no boundary");
-        for (i = 0; i < t->move_count; ++i) moved |= gproj_mesh_is_boundary_vertex(t->mesh, t->move[i].vertex);
-        if (!moved) {
+        for (i = 0; i < t->mesh->vertex_count; ++i)
+            all = all && !(gproj_mesh_is_boundary_vertex(t->mesh, i) && is_free(t, i));
+        if (all) {
             if (word->weight > 0) gproj_add_gliding_boundary(t->form, word->weight);
             return true;
         }
@@ -1646,6 +1660,8 @@ static const tool_option options[] = {
      "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times that of the mesh as "
      "the solve begins",
      set_volume, PLACE(volume), HARD, SIZES, .add = add_volume},
+    {"free", "WHICH", "vertices that --fix and --glide leave out. WHICH: as in --fix", set_vertices, SETS(loose),
+     .stage = SIZES, .add = add_loose},
     {"fix", "WHICH[=W]",
      "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
      add_fix, 0, HARD, SIZES, .add = add_fixed, .repeatable = true},
@@ -1670,7 +1686,7 @@ static const tool_option options[] = {
     {"supports", "WHICH",
      "where forces go to the ground: boundary (if left out), corners, a list or a file, as in --fix. This does not "
      "hold them in place: without --fix or --glide of the same vertices they move",
-     set_supports, SETS(supports), .needs = &statics},
+     set_vertices, SETS(supports), .needs = &statics},
     {"density", "R", "each edge weighs R times its length (1 where no load is given)", set_load, SETS(density),
      .needs = &statics},
     {"area-load", "Q", "each face weighs Q times its area", set_load, SETS(area_load), .needs = &statics},
@@ -2980,7 +2996,7 @@ static void clean_up(tool *t) {
     for (i = 0; i < MOST_LEVELS; ++i) gproj_stencil_destroy(t->followers[i]);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
-    free(t->point_load), free(t->is_support), free(t->density_of_edge), free(t->force_in_edge);
+    free(t->point_load), free(t->is_support), free(t->is_loose), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade);
     gprojx_history_free(&t->history);
