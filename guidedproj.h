@@ -10475,16 +10475,17 @@ static const double gproji_shortest = 0.125;        /* part of a step whose loca
 /* A residual below the first that keeps more than the second part of itself from one look to the next creeps. */
 static const double gproji_creep_below = 0.02, gproji_creep_left = 0.5;
 enum {
-    GPROJI_TRIALS = 8,           /* of one iteration, with different eps or stiffness */
-    GPROJI_BOUND_ROUNDS = 3,     /* how often each is found again with other active bounds */
-    GPROJI_PATIENCE = 5,         /* iterations without progress before the loop stops, */
-    GPROJI_PATIENCE_STIFF = 12,  /* and with a metric */
-    GPROJI_ACTIVATIONS = 4,      /* from then on no row of the guard is dormant */
-    GPROJI_VIOLATIONS = 3,       /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_MOST = 50,       /* with a higher limit safeguards act in half of the iterations, at most so many */
-    GPROJI_SAFE_LAST = 30,       /* iterations after that in which they ask for the least */
-    GPROJI_CREEP_ITERATIONS = 6, /* between two looks at how far the residual has fallen */
-    GPROJI_WARY = 4,             /* iterations with a cautious stiffness after a step has failed or was short */
+    GPROJI_TRIALS = 8,              /* of one iteration, with different eps or stiffness */
+    GPROJI_BOUND_ROUNDS = 3,        /* how often each is found again with other active bounds */
+    GPROJI_PATIENCE = 5,            /* iterations without progress before the loop stops, */
+    GPROJI_PATIENCE_STIFF = 12,     /* and with a metric */
+    GPROJI_ACTIVATIONS = 4,         /* from then on no row of the guard is dormant */
+    GPROJI_VIOLATIONS = 3,          /* how often a step is found again with new rows of safeguards */
+    GPROJI_SAFE_MOST = 50,          /* with a higher limit safeguards act in half of the iterations, at most so many */
+    GPROJI_SAFE_LAST = 30,          /* iterations after that in which they ask for the least */
+    GPROJI_CREEP_ITERATIONS = 6,    /* between two looks at how far the residual has fallen */
+    GPROJI_BALANCE_ITERATIONS = 20, /* without wishes; earlier, constraints may be in balance in passing */
+    GPROJI_WARY = 4,                /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
     GPROJI_PASS_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
@@ -11531,7 +11532,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_usual;
     double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
     int32_t second = -1, wish = -1, i, k;
-    bool guided, balanced;
+    bool guided, tired, balanced;
     more[0] = 0;
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
     for (i = 0; i < s->group_count; ++i) {
@@ -11545,7 +11546,8 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
         if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
     guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
-    balanced = guided && gproji_constraints_balance(s);
+    tired = !stalled && !loop->options.nearest && s->progress.unguided >= GPROJI_BALANCE_ITERATIONS;
+    balanced = (guided || tired) && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
         gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)

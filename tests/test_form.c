@@ -1310,6 +1310,36 @@ GPROJT_TEST(angles_of_circles_are_named) {
     }
 }
 
+/* A dome over a fixed square that is to hold more with the same area: more iterations do not help, and after enough of
+   them the verdict says so. */
+GPROJT_TEST(conflicts_at_the_limit) {
+    static const int32_t limit[2] = {10, 40};
+    int k;
+    for (k = 0; k < 2; ++k) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&soup, 0, sizeof soup);
+        memset(&options, 0, sizeof options);
+        gprojt_add_sheared(&soup, 8, 8, false, 0);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed_boundary(form, 1);
+        gproj_add_volume(form, 1.5 * gproj_volume(mesh), 1);
+        gproj_add_total_area(form, 65, 1);
+        options.smooth = true;
+        result = gproj_solve(form, limit[k], &options);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "allow more iterations") != NULL) == (k == 0));
+        GPROJT_CHECK((strstr(result.message, "work against each other") != NULL) == (k == 1));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Equilibrium with the boundary as supports, or all vertices. */
 static void gprojt_add_supported(gproj_form *form, const gproj_mesh *mesh, const gproj_loads *loads, bool all) {
     gproj_supports supports;
@@ -3104,6 +3134,7 @@ int main(void) {
     GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
+    GPROJT_RUN(conflicts_at_the_limit);
     GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(rings_that_glide_in_a_plane);
     GPROJT_RUN(carriers_in_a_plane_are_not_named);
