@@ -23092,8 +23092,9 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
     return -1;
 }
 
-/* Names a plane that spreads from held vertices and leaves no flat faces, or none that carry. */
-GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, const double *value,
+/* Names a plane that spreads from held vertices and leaves no flat faces, or none that carry. Returns whether there is
+   one. */
+GPROJI_INTERNAL bool gproji_tell_planes(const gproj_form *form, double *held, const double *value,
                                         gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
@@ -23123,6 +23124,7 @@ GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, co
                       "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
                       "carry its load: let some of the held vertices go",
                       loaded_face, loaded);
+    return vertex >= 0 || loaded >= 0;
 }
 
 /* Angles of circles. In a convex polygon with a circumcircle and an even number of corners the angles at every other
@@ -23132,46 +23134,47 @@ GPROJI_INTERNAL void gproji_tell_planes(const gproj_form *form, double *held, co
    the beginning. If they differ, as by a corner of 60 degrees in a grid whose number of faces along a side is odd, all
    faces can only be circular where some collapse or cross themselves. */
 
-/* Says by how much the two sums differ for a part of the mesh, and which vertex has the largest share in that. Returns
-   whether they do. Here held[3 v] says whether vertex v is held; [3 v + 1] becomes the colour, 1 or -1, and [3 k + 2]
-   the k-th vertex of a queue. */
-GPROJI_INTERNAL bool gproji_tell_angles(const gproj_form *form, double *held, gproj_result *result) {
+/* Says by how much the two sums differ in a part of the mesh whose boundary stays, and which vertex has the largest
+   share in that. Here held[3 v] says whether vertex v is held, 1, or becomes -1 if it glides;
+   [3 v + 1] becomes the colour, 1 or -1, and [3 k + 2] the k-th vertex of a queue. */
+GPROJI_INTERNAL void gproji_tell_angles(const gproj_form *form, double *held, gproj_result *result) {
     static const double noticeable = 0.1; /* radians; less may be the curvature */
     const gproj_mesh *mesh = form->mesh;
     const gproji_part *part;
     size_t length = strlen(result->message);
     double most = noticeable;
-    int32_t loose = 0, vertex = -1, count = 0, faces, v, i;
-    /* 1. Every face is circular, and no boundary vertex is free. */
-    if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return false;
-    for (v = 0; v < mesh->vertex_count; ++v)
-        loose += gproj_mesh_is_boundary_vertex(mesh, v) && !(held[3 * (size_t)v] > 0);
+    int32_t vertex = -1, count = 0, faces, v, i;
+    /* 1. Every face is to be circular. Which vertices glide? */
+    if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return;
     for (part = form->part; part; part = part->next) {
         const gproji_group *g = gproji_group_at(form->system, part->group);
         for (i = 0; part->rule == &gproji_circularity_rule && i < g->row_count; ++i)
-            if (!(g->row[i].weight > 0)) return false;
+            if (!(g->row[i].weight > 0)) return;
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
-        for (i = 0; i < part->count; ++i)
-            loose -= g->row[3 * i].weight > 0 && !(held[3 * (size_t)part->element[i]] > 0);
+        for (i = 0; i < part->count; ++i) {
+            double *of = &held[3 * (size_t)part->element[i]];
+            if (*of == 0 && g->row[3 * i].weight > 0) *of = -1;
+        }
     }
-    if (loose > 0) return false;
+    for (v = 0; v < mesh->vertex_count; ++v) held[3 * (size_t)v + 1] = 0;
     /* 2. Each part of the mesh is coloured from one vertex on. Regular faces have the same sums, so only what a vertex
        has more than in these is summed. With a face that has an odd number of corners there are no such colours. */
     for (v = 0; v < mesh->vertex_count; ++v) {
         double sum = 0, largest[2] = {0, 0};
         int32_t head = count, at[2] = {-1, -1};
+        bool edged = false, loose = false;
         if (held[3 * (size_t)v + 1] != 0 || mesh->vertex_halfedge[v] < 0) continue;
         held[3 * (size_t)v + 1] = 1;
         for (held[3 * (size_t)count++ + 2] = v; head < count; ++head) {
             int32_t u = (int32_t)held[3 * (size_t)head + 2], start = mesh->vertex_halfedge[u], h = start, side;
             double colour = held[3 * (size_t)u + 1], more = gproji_angle_sum(mesh, form->original, u, false);
+            if (gproj_mesh_is_boundary_vertex(mesh, u)) edged = true, loose = loose || held[3 * (size_t)u] == 0;
             do {
                 int32_t w = mesh->origin[h ^ 1], face = mesh->face[h];
                 double *other = &held[3 * (size_t)w + 1];
                 if (face >= 0) more -= GPROJI_PI * (1 - 2.0 / mesh->face_degree[face]);
-                if (*other == colour) return false;
-                if (*other == 0) held[3 * (size_t)count++ + 2] = w;
-                *other = -colour;
+                loose = loose || *other == colour;
+                if (*other == 0) held[3 * (size_t)count++ + 2] = w, *other = -colour;
                 h = gproji_rotate(mesh, h);
             } while (h != start);
             more *= colour;
@@ -23179,9 +23182,9 @@ GPROJI_INTERNAL bool gproji_tell_angles(const gproj_form *form, double *held, gp
             side = more < 0;
             if (fabs(more) > largest[side]) largest[side] = fabs(more), at[side] = u;
         }
-        if (fabs(sum) > most) most = fabs(sum), vertex = at[sum < 0];
+        if (edged && !loose && fabs(sum) > most) most = fabs(sum), vertex = at[sum < 0];
     }
-    if (vertex < 0) return false;
+    if (vertex < 0) return;
     faces = gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
     gproji_format(
         result->message + length, sizeof result->message - length,
@@ -23189,7 +23192,6 @@ GPROJI_INTERNAL bool gproji_tell_angles(const gproj_form *form, double *held, gp
         "but with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): let vertices of "
         "the boundary go, or insert a strip of faces",
         floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
-    return true;
 }
 
 /* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
@@ -23222,7 +23224,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
             of[0] = of[0] + of[1] + of[2] == 3;
             of[1] = of[2] = 0;
         }
-        if (!gproji_tell_angles(form, held, result)) gproji_tell_planes(form, held, value, result);
+        if (!gproji_tell_planes(form, held, value, result)) gproji_tell_angles(form, held, result);
     }
     return bent > 0;
 }

@@ -1195,6 +1195,7 @@ GPROJT_TEST(planes_that_spread_are_named) {
             gproj_form *form = gproj_form_create(mesh, NULL);
             gproj_result result;
             gproj_add_planarity(form, 1);
+            if (glides) gproj_add_circularity(form, 1); /* its reasons come second */
             if (k == 3) { /* a side and the ones beside it, without a corner */
                 gproj_add_fixed(form, 4, side, 1);
                 gproj_add_fixed(form, 5, next, 1);
@@ -1209,6 +1210,7 @@ GPROJT_TEST(planes_that_spread_are_named) {
             GPROJT_CHECK(!strstr(result.message, "flat faces that keep their corners share one plane from face ") ==
                          (k > 0));
             if (k == 0) GPROJT_CHECK(strstr(result.message, "and others likewise") != NULL);
+            if (k == 0) GPROJT_CHECK(strstr(result.message, "chessboard") == NULL);
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }
@@ -1274,24 +1276,24 @@ static void gprojt_add_sheared(gprojt_soup *soup, int32_t m, int32_t n, bool spl
 
 /* The corners of a sheared grid with odd numbers of faces have angles that leave no circular faces with a boundary that
    stays: 2 (90 - 73.3) degrees of either colour too little and too much. With an even number, a free corner, a face that
-   need not be circular or a triangle there is no such reason. */
+   need not be circular or a triangle there is no such reason; each part of a mesh has its own. */
 GPROJT_TEST(angles_of_circles_are_named) {
     static const char name[] = "with this boundary the sums differ by 67 degrees, most by vertex";
     static const int32_t corner[1] = {7};
     static const double none[1] = {0};
     int k;
-    for (k = 0; k < 8; ++k) {
+    for (k = 0; k < 9; ++k) {
         gprojt_soup soup;
         gproj_mesh *mesh;
         gproj_form *form;
         gproj_solve_options options;
         gproj_result result;
         int32_t circular, held;
-        bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6;
+        bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6 || k == 8;
         memset(&soup, 0, sizeof soup);
         memset(&options, 0, sizeof options);
-        gprojt_add_sheared(&soup, 7, k == 1 ? 8 : 7, k == 5, 0);
-        if (k == 6) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        gprojt_add_sheared(&soup, 7, k == 1 ? 8 : 7, k == 5 || k == 8, 0);
+        if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
         mesh = gprojt_mesh_of(soup);
         form = gproj_form_create(mesh, NULL);
         if (k != 7) gproj_add_planarity(form, 1);
