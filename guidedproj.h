@@ -703,7 +703,8 @@ typedef struct gproj_solve_options {
        the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
        weights' ratios matter, and nothing is biased. If nothing is wished, gproj_solve adds closeness to the positions
        that it begins with, and ends at the mesh nearest to these. Takes about 30 iterations, allow 60 (gproj_solve).
-       Converged means here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum. */
+       Converged means here that the constraints hold and gproj_result.optimality <= 1e-6, at a minimum; or where no
+       direction lowers the wishes visibly. Limits decide about the way: a larger one does not just go on. */
     bool nearest;
 } gproj_solve_options;
 
@@ -1700,9 +1701,9 @@ typedef struct gproj_drag_options {
        anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
        more than a mean edge length for it. For long drags. Where following the handles all the way would leave a
        residual above 1, or one that grows in spite of that step, they stay behind (gproj_drag_info), and follow in the
-       next moves, also to the same place; but a jump of which even a sixteenth would leave more than 1 is made at once.
-       A move then costs an evaluation of all rows, and now and then as much as gproj_drag_begin. 0 or INFINITY: never.
-     */
+       next moves, also to the same place; but a jump of which even 1/256 would leave more than 1 is made at once, from
+       the mesh before the drag. A move then costs an evaluation of all rows, and now and then as much as
+       gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound;
     bool keep_wishes; /* at the release the form's own wishes guide, too */
 } gproj_drag_options;
@@ -7943,9 +7944,11 @@ GPROJ_API gproj_system *gproj_system_create(const gproj_host *host) {
 /* A group for reading; callers change it by functions of this section. */
 GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t group) { return &s->group[group]; }
 
-/* Forbids or allows that anything is added, as during a solve; returns what was before. */
+/* Forbids or allows that anything is added, as during a solve; returns what was before. Rows that are seen without one
+   see no progress. */
 GPROJI_INTERNAL bool gproji_hold(gproj_system *s, bool solving) {
     bool before = s->solving;
+    if (solving && !before) memset(&s->progress, 0, sizeof s->progress);
     s->solving = solving;
     return before;
 }
@@ -11522,7 +11525,8 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
     return sum <= 0.01 * size;
 }
 
-static const double gproji_almost = 1e-9; /* residual that rounding of the input explains */
+static const double gproji_almost = 1e-9;         /* residual that rounding of the input explains */
+static const double gproji_conflict_least = 1e-3; /* residual that is no slow end */
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
 /* Writes why the rows of the worst group, g, do not hold, and advice. */
@@ -11546,7 +11550,9 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
         if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
     guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
-    tired = !stalled && !loop->options.nearest && s->progress.unguided >= GPROJI_BALANCE_ITERATIONS;
+    /* A limit met is no conflict, unless much is left long after the wishes and nothing changes any more. */
+    tired = !stalled && !loop->options.nearest && s->progress.unguided >= GPROJI_BALANCE_ITERATIONS &&
+            loop->standing.residual > gproji_conflict_least;
     balanced = (guided || tired) && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
         gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
@@ -11663,6 +11669,7 @@ static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
 static const double gproji_nearest_flat = 0.01;     /* a minimum's matrix is positive definite with this shift */
+static const double gproji_nearest_lower = 1e-7;    /* a part of the energy whose decrease counts */
 static const double gproji_nearest_reach = 2;       /* the longest slide, in the largest |x| and 1 */
 static const double gproji_nearest_rise = 2;        /* of the wishes in a slide, see gproji_take_slide */
 static const double gproji_nearest_left = 0.5;      /* of the residual: if a last step leaves more, safeguards yield */
@@ -11677,6 +11684,7 @@ enum {
     GPROJI_NEAREST_HALVES = 5,  /* lengths of a step */
     GPROJI_CALM_HALVES = 10,    /* lengths of a calm one */
     GPROJI_CALM_SWITCHES = 16,  /* sets of bounds that a calm one tries */
+    GPROJI_NEAREST_STILL = 5,   /* stationary points without a decrease */
     GPROJI_NEAREST_RETRACT = 3  /* steps back to the constraints */
 };
 
@@ -11991,10 +11999,12 @@ GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
     gproji_judge_nearest(loop);
 }
 
-/* Do the constraints hold at a minimum of the wishes? */
+/* Do the constraints hold at a minimum of the wishes? The matrix is positive definite there; or some direction has so
+   little curvature that slides from one stationary point to the next do not lower the energy. */
 GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
     double optimality = loop->iteration.optimality;
-    return gproji_holds(loop) && (optimality == 0 || (loop->minimum && optimality <= gproji_nearest_optimal));
+    bool shown = loop->minimum || loop->waited >= GPROJI_NEAREST_STILL;
+    return gproji_holds(loop) && (optimality == 0 || (shown && optimality <= gproji_nearest_optimal));
 }
 
 /* The iterations; returns how they ended. */
@@ -12036,12 +12046,19 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
             s->x[i] += gproji_nearest_symmetry * loop->iteration.step * ((double)(state >> 8) / 8388608.0 - 1);
         }
         gproji_see_nearest(loop);
+        if (gproji_holds(loop) && loop->iteration.optimality <= gproji_nearest_optimal) {
+            double energy = loop->best.residual <= DBL_MAX ? loop->best.energy : HUGE_VAL;
+            bool lower = loop->standing.energy < (1 - gproji_nearest_lower) * energy;
+            loop->waited = lower ? 0 : loop->waited + 1;
+            if (lower) loop->best = loop->standing;
+        }
         /* 3. Safeguards, if the mesh is spoiled at a minimum or in the second half. */
         if (n < last && (n >= half || gproji_is_nearest(loop)) && loop->hooks.mend &&
             loop->hooks.mend(loop->hooks.user)) {
             gproji_place_woken(loop, true);
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             gproji_see_nearest(loop);
+            loop->waited = 0;
         }
         if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
         if (s->changed) gproji_see_nearest(loop);
@@ -12369,6 +12386,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_double(stream, &loop->result.step, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->best.residual, 0, HUGE_VAL);
     gproji_pass_double(stream, &loop->best.merit, 0, HUGE_VAL);
+    gproji_pass_double(stream, &loop->best.energy, 0, HUGE_VAL);
     gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
@@ -12387,6 +12405,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
     gproji_pass_integer(stream, &s->progress.unguided, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->earlier, 0, INT32_MAX / 2);
+    gproji_pass_double(stream, &loop->fading, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->unseen);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
@@ -22993,32 +23012,31 @@ GPROJI_INTERNAL double gproji_off_plane(const gproji_spread *s, int32_t v) {
     return fabs(gproji_dot3(offset, s->normal));
 }
 
-/* Notes for all vertices that glide along the side with boundary half-edge h whether the whole side is in the plane. */
-GPROJI_INTERNAL void gproji_look_along(gproji_spread *s, int32_t h) {
+/* Must the vertex be in the plane: a held one by its distance, a gliding one by the whole side, others once
+   gproji_spread_to has taken them in? Remembers the answer, that of a side for all vertices that glide along it. */
+GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
     const gproj_mesh *mesh = s->form->mesh;
-    int32_t first = mesh->prev[h], last = h, e;
-    bool in;
-    while (first != h && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
+    double *looked = &s->held[3 * (size_t)v + 1];
+    int32_t first, last, e;
+    bool in = true;
+    if (fabs(*looked) == s->plane) return *looked > 0;
+    *looked = -s->plane;
+    if (gproji_stays(s, v)) *looked = gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
+    if (gproji_stays(s, v) || !gproj_mesh_is_boundary_vertex(mesh, v) ||
+        !gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule))
+        return *looked > 0;
+    /* From one held vertex to the next; around the whole boundary if there is none. */
+    first = mesh->prev[mesh->vertex_halfedge[v]], last = mesh->vertex_halfedge[v];
+    while (first != mesh->vertex_halfedge[v] && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
     while (mesh->next[last] != first && !gproji_stays(s, mesh->origin[last])) last = mesh->next[last];
-    in = gproji_off_plane(s, mesh->origin[last]) <= gproji_plane_near;
-    for (e = first; e != last; e = mesh->next[e]) in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
+    for (e = first;; e = mesh->next[e]) {
+        in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
+        if (e == last) break;
+    }
     for (e = last;; e = mesh->prev[e]) {
         if (!gproji_stays(s, mesh->origin[e])) s->held[3 * (size_t)mesh->origin[e] + 1] = in ? s->plane : -s->plane;
         if (e == first) break;
     }
-}
-
-/* Must the vertex be in the plane: a held one by its distance, a gliding one by the whole side, others once
-   gproji_spread_to has taken them in? Remembers the answer. */
-GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
-    double *looked = &s->held[3 * (size_t)v + 1];
-    if (fabs(*looked) == s->plane) return *looked > 0;
-    *looked = -s->plane;
-    if (gproji_stays(s, v))
-        *looked = gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
-    else if (gproj_mesh_is_boundary_vertex(s->form->mesh, v) &&
-             gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule))
-        gproji_look_along(s, s->form->mesh->vertex_halfedge[v]);
     return *looked > 0;
 }
 
@@ -23094,24 +23112,21 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
 
 /* Names a plane that spreads from held vertices and leaves no flat faces, or none that carry. Returns whether there is
    one. */
-GPROJI_INTERNAL bool gproji_tell_planes(const gproj_form *form, double *held, const double *value,
-                                        gproj_result *result) {
+GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) {
+    const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
     size_t length = strlen(result->message);
     int32_t f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
     double off = 0;
-    gproji_spread s;
-    memset(&s, 0, sizeof s);
-    s.form = form, s.held = held, s.value = value;
     if (statics) gproj_get_loads(form, statics->work, NULL);
     for (f = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] < 4) continue;
-        gproji_spread_from(&s, f);
-        planes += s.vertex >= 0;
-        if (s.off > off) off = s.off, face = f, vertex = s.vertex;
+        gproji_spread_from(s, f);
+        planes += s->vertex >= 0;
+        if (s->off > off) off = s->off, face = f, vertex = s->vertex;
         if (!statics || loaded >= 0) continue;
-        loaded = gproji_find_unbearable(&s, statics->work);
+        loaded = gproji_find_unbearable(s, statics->work);
         if (loaded >= 0) loaded_face = f;
     }
     if (vertex >= 0)
@@ -23129,31 +23144,49 @@ GPROJI_INTERNAL bool gproji_tell_planes(const gproj_form *form, double *held, co
 
 /* Angles of circles. In a convex polygon with a circumcircle and an even number of corners the angles at every other
    corner have half of the sum. So where the vertices can be coloured as a chessboard's squares are, the angles around
-   those of one colour and around those of the other add up to the same. Inside, a smooth surface has 2 pi around a
-   vertex, and a boundary that is held or glides along itself keeps the angles there: the two sums are then those of
-   the beginning. If they differ, as by a corner of 60 degrees in a grid whose number of faces along a side is odd, all
-   faces can only be circular where some collapse or cross themselves. */
+   those of one colour and around those of the other add up to the same. On a smooth mesh the faces have 2 pi around an
+   inner vertex, pi along a boundary that glides, and elsewhere the angle between the held edges. If the two sums
+   differ then, as by a corner of 60 degrees in a grid whose number of faces along a side is odd, all faces can hardly
+   be circular unless some collapse or cross themselves. */
+
+/* The angle inside the mesh at a boundary vertex that stays, between its edges of the boundary. These leave the smaller
+   one or the larger; faces at the beginning tell which. */
+GPROJI_INTERNAL double gproji_held_angle(const gproji_spread *s, int32_t v) {
+    const gproj_mesh *mesh = s->form->mesh;
+    int32_t h = mesh->vertex_halfedge[v];
+    double a[3], b[3], cross[3], angle, now = gproji_angle_sum(mesh, s->form->original, v, false);
+    gproji_sub3(gproji_place_of(s, mesh->origin[h ^ 1]), gproji_place_of(s, v), a);
+    gproji_sub3(gproji_place_of(s, mesh->origin[mesh->prev[h]]), gproji_place_of(s, v), b);
+    gproji_cross3(a, b, cross);
+    angle = atan2(gproji_length3(cross), gproji_dot3(a, b));
+    return fabs(now - angle) <= fabs(now - (2 * GPROJI_PI - angle)) ? angle : 2 * GPROJI_PI - angle;
+}
 
 /* Says by how much the two sums differ in a part of the mesh whose boundary stays, and which vertex has the largest
-   share in that. Here held[3 v] says whether vertex v is held, 1, or becomes -1 if it glides;
-   [3 v + 1] becomes the colour, 1 or -1, and [3 k + 2] the k-th vertex of a queue. */
-GPROJI_INTERNAL void gproji_tell_angles(const gproj_form *form, double *held, gproj_result *result) {
+   share in that. Here held[3 v] says whether vertex v is held, 1, or becomes -1 if it glides; [3 v + 1] becomes the
+   colour, 1 or -1, and [3 k + 2] the k-th vertex of a queue. */
+GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) {
     static const double noticeable = 0.1; /* radians; less may be the curvature */
+    const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_part *part;
     size_t length = strlen(result->message);
-    double most = noticeable;
+    double *held = s->held, most = noticeable;
     int32_t vertex = -1, count = 0, faces, v, i;
-    /* 1. Every face is to be circular. Which vertices glide? */
+    /* 1. Every face is to be flat and circular. Which vertices glide, and over which kinks? */
     if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return;
     for (part = form->part; part; part = part->next) {
         const gproji_group *g = gproji_group_at(form->system, part->group);
-        for (i = 0; part->rule == &gproji_circularity_rule && i < g->row_count; ++i)
+        for (i = 0; part->rule == &gproji_circularity_rule || part->rule == &gproji_planarity_rule; ++i) {
+            if (i == g->row_count) break;
             if (!(g->row[i].weight > 0)) return;
+        }
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            double *of = &held[3 * (size_t)part->element[i]];
-            if (*of == 0 && g->row[3 * i].weight > 0) *of = -1;
+            v = part->element[i];
+            if (held[3 * (size_t)v] != 0 || !(g->row[3 * i].weight > 0)) continue;
+            held[3 * (size_t)v] = -1;
+            most = gproji_fmax(most, noticeable + fabs(GPROJI_PI - gproji_held_angle(s, v)));
         }
     }
     for (v = 0; v < mesh->vertex_count; ++v) held[3 * (size_t)v + 1] = 0;
@@ -23167,8 +23200,12 @@ GPROJI_INTERNAL void gproji_tell_angles(const gproj_form *form, double *held, gp
         held[3 * (size_t)v + 1] = 1;
         for (held[3 * (size_t)count++ + 2] = v; head < count; ++head) {
             int32_t u = (int32_t)held[3 * (size_t)head + 2], start = mesh->vertex_halfedge[u], h = start, side;
-            double colour = held[3 * (size_t)u + 1], more = gproji_angle_sum(mesh, form->original, u, false);
-            if (gproj_mesh_is_boundary_vertex(mesh, u)) edged = true, loose = loose || held[3 * (size_t)u] == 0;
+            double colour = held[3 * (size_t)u + 1], more = 2 * GPROJI_PI;
+            if (gproj_mesh_is_boundary_vertex(mesh, u)) {
+                edged = true;
+                loose = loose || held[3 * (size_t)u] == 0;
+                more = gproji_stays(s, u) ? gproji_held_angle(s, u) : GPROJI_PI;
+            }
             do {
                 int32_t w = mesh->origin[h ^ 1], face = mesh->face[h];
                 double *other = &held[3 * (size_t)w + 1];
@@ -23189,8 +23226,8 @@ GPROJI_INTERNAL void gproji_tell_angles(const gproj_form *form, double *held, gp
     gproji_format(
         result->message + length, sizeof result->message - length,
         "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
-        "but with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): let vertices of "
-        "the boundary go, or insert a strip of faces",
+        "but in a smooth mesh with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): "
+        "let corners or other vertices of the boundary go, or insert a strip of faces",
         floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
 }
 
@@ -23219,12 +23256,15 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
     else if (planar) {
+        gproji_spread spread;
+        memset(&spread, 0, sizeof spread);
+        spread.form = form, spread.held = held, spread.value = value;
         for (v = 0; v < form->mesh->vertex_count; ++v) { /* one number for each vertex, and room for two */
             double *of = held + 3 * (size_t)v;
             of[0] = of[0] + of[1] + of[2] == 3;
             of[1] = of[2] = 0;
         }
-        if (!gproji_tell_planes(form, held, value, result)) gproji_tell_angles(form, held, result);
+        if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
     }
     return bent > 0;
 }
@@ -23744,7 +23784,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
     for (i = 0; beginning->fading && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (g->kind == GPROJ_WISH && g->role < GPROJI_GUARD) largest = gproji_fmax(largest, g->schedule.weight);
+        if (g->kind == GPROJ_WISH && gproji_own_of(form, i) == GPROJI_OWN_NONE)
+            largest = gproji_fmax(largest, g->schedule.weight);
     }
     if (largest > 0) solve->loop.fading = gproji_nearest_scale / largest;
     return solve->on;
@@ -23812,7 +23853,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
         const char *advice = strstr(result->message, gproji_more_iterations);
         size_t length = strlen(result->message), cut = sizeof gproji_more_iterations - 1;
-        form->solve.futile = gproji_tell_held(form, result);
+        if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
         /* More iterations would not help against what is held. */
         if (advice && result->message[length])
             memmove(result->message + (advice - result->message), advice + cut, strlen(advice + cut) + 1);
@@ -23828,10 +23869,10 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
 /* One whole solve, not in frames, numbered on from the iterations of earlier attempts. */
 GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations, int32_t earlier,
                                             const gproji_beginning *beginning, const gproj_solve_options *options) {
-    gproj_result result;
-    if (!gproji_begin_solve(form, iterations, beginning, options)) return form->solve.loop.result;
-    form->solve.loop.earlier = earlier;
-    result = gproji_run_solve(form, -1);
+    bool begun = gproji_begin_solve(form, iterations, beginning, options);
+    gproj_result result = form->solve.loop.result;
+    if (begun) form->solve.loop.earlier = earlier;
+    if (begun) result = gproji_run_solve(form, -1);
     result.iterations += earlier;
     return result;
 }
@@ -23846,9 +23887,10 @@ GPROJI_INTERNAL double gproji_lack(const gproj_result *result) {
 }
 
 /* Puts the variables at `end`, where an attempt has ended with loads of this scale, and everything that is said of
-   them. */
-GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, double load_scale) {
+   them: with wishes if it was the nearest that was looked for. */
+GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, double load_scale, bool nearest) {
     gproji_part *part;
+    if (nearest) gproji_set_nearest_weights(form->system, gproji_nearest_scale);
     if (form->statics) form->statics->load_scale = load_scale;
     /* What refreshes keep, such as segments of curves, is of later attempts. */
     for (part = form->part; part; part = part->next)
@@ -23874,7 +23916,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     double *end =
         (double *)gproji_take(&form->heap, count, sizeof *end); /* of the best attempt, if it was not the last */
     double begun = gproji_now(s), load_scale = 1;               /* there, too */
-    bool started = form->statics && form->statics->started, here = true, away = false;
+    bool started = form->statics && form->statics->started, here = true, away = false, wished;
     gproj_solve_options how = *options;
     gproji_beginning beginning = gproji_beginnings[0];
     gproj_result result;
@@ -23889,6 +23931,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     result = gproji_attempt(form, iterations, 0, &beginning, &how);
     used = result.iterations;
     left = iterations - used;
+    wished = how.nearest && result.optimality > 0;
     if (how.nearest)
         left = GPROJI_ATTEMPTS_MOST * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_ATTEMPTS_MOST);
     how.nearest = false;
@@ -23922,10 +23965,14 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
             double seconds = result.seconds[k] + other.seconds[k];
             result.seconds[k] = other.seconds[k] = seconds;
         }
-        if (here) result = other, away = options->nearest;
+        if (here) result = other, away = wished;
+    }
+    if (!here) gproji_return_to(form, end, load_scale, options->nearest && !away);
+    if (!here && !gproji_form_ready(form)) { /* a refresh has failed there */
+        gproji_reset_mesh(form);
+        result = gproji_failed_result(gproj_form_error(form));
     }
     result.attempts = attempt;
-    if (!here) gproji_return_to(form, end, load_scale);
     if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0) {
         size_t length = strlen(result.message);
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
@@ -24020,7 +24067,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstL", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstM", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -24182,7 +24229,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'L'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'M'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
@@ -24287,12 +24334,12 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
    = I. They move the handles by L = S'Q, and a move by e = (S'S) d takes dx = Q m with the m that minimises |L m - e|.
    */
 
-static const double gproji_drag_epsilon = 3e-4;   /* see (1) */
-static const double gproji_drag_damping = 10;     /* epsilon's factor where a step is damped */
-static const double gproji_drag_light = 1e-2;     /* the root of the other variables' weight in D */
-static const double gproji_drag_most = 1;         /* a move goes only part of the way beyond this residual, */
-static const double gproji_drag_least = 1.0 / 16; /* unless this part is too long, too */
-static const double gproji_drag_stiff = 1e-6;     /* a handle that yields less, relative to a free one, does not move */
+static const double gproji_drag_epsilon = 3e-4;    /* see (1) */
+static const double gproji_drag_damping = 10;      /* epsilon's factor where a step is damped */
+static const double gproji_drag_light = 1e-2;      /* the root of the other variables' weight in D */
+static const double gproji_drag_most = 1;          /* a move goes only part of the way beyond this residual, */
+static const double gproji_drag_least = 1.0 / 256; /* unless this part is too long, too */
+static const double gproji_drag_stiff = 1e-6; /* a handle that yields less, relative to a free one, does not move */
 static const double gproji_drag_fairness = 0.2, gproji_drag_decay = 0.9; /* of the release */
 static const double gproji_drag_rest = 1e-3; /* the weight of places before the drag beside those of handles */
 enum {
@@ -24537,8 +24584,9 @@ GPROJI_INTERNAL gproj_code gproji_undo_move(gproj_drag *drag, gproj_drag_info be
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) {
     gproj_drag_info info;
     gproj_system *s;
-    double *x, bound, residual;
+    double *x, bound, most, residual;
     int32_t k, j, c, handles;
+    bool lost;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
@@ -24557,12 +24605,18 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
                 drag->wanted[3 * k + c] += drag->handle.gram[(size_t)k * (size_t)handles + (size_t)j] *
                                            (positions[3 * j + c] - drag->handle.from[3 * j + c]) * drag->form->scale;
     bound = drag->options.residual_bound > 0 ? drag->options.residual_bound : HUGE_VAL;
-    residual = gproji_follow_handles(drag, gproji_fmax(bound, gproji_drag_most), 1);
-    /* 2. Beyond the bound: linearise at x, and go on to the handles from there, if the residual does not grow. */
-    if (!(residual <= bound)) { /* also where it is no number */
-        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
-        gproji_follow_handles(drag, residual, 0);
+    most = gproji_fmax(bound, gproji_drag_most);
+    residual = gproji_follow_handles(drag, most, 1);
+    /* 2. Beyond the bound: linearise at x, and go on to the handles from there, if the residual does not grow. After a
+       jump that leaves too much, handles could not come back from x: go on from the mesh before the drag. */
+    lost = !(residual <= most); /* also where it is no number */
+    if (!(residual <= bound) && gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK)
+        return gproji_undo_move(drag, info);
+    if (lost) {
+        memcpy(x, drag->before.x, (size_t)drag->variables * sizeof *x);
+        if (gproji_linearise_drag(drag, false, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
     }
+    if (!(residual <= bound)) gproji_follow_handles(drag, lost ? most : residual, lost ? 1 : 0);
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
 }

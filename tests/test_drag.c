@@ -656,6 +656,27 @@ GPROJT_TEST(a_wild_move) {
     gprojt_clear_stage(&stage);
 }
 
+/* A handle that is pulled faster than it can follow stays behind, and one that has jumped too far comes back: what must
+   hold is never lost for good. */
+GPROJT_TEST(a_fast_drag) {
+    static const double path[] = {2, 4, 6, 8, 10, 14, 8, 4, 1000, 20, 4, 6000, 20, 4, 2};
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(10, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh), k;
+    gproj_handles handles = gprojt_vertex_handles(1, &v);
+    gproj_drag_options options;
+    gproj_drag *drag;
+    memset(&options, 0, sizeof options);
+    options.residual_bound = 0.05;
+    drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+    GPROJT_REQUIRE(drag);
+    for (k = 0; k < (int32_t)(sizeof path / sizeof *path); ++k) {
+        gprojt_pull(&stage, drag, v, path[k] * stage.edge);
+        GPROJT_CHECK(gproj_drag_residual(drag) <= 1 || path[k] >= 1000);
+    }
+    GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_CONVERGED);
+    gprojt_clear_stage(&stage);
+}
+
 /* To the bit as if it had not been, whether the responses are those of the beginning or later ones. */
 GPROJT_TEST(a_wild_move_leaves_no_trace) {
     int way, wild, i;
@@ -1458,6 +1479,7 @@ int main(void) {
     GPROJT_RUN(what_cannot_be_restored);
     GPROJT_RUN(restorations_by_far_are_not_made);
     GPROJT_RUN(a_wild_move);
+    GPROJT_RUN(a_fast_drag);
     GPROJT_RUN(a_wild_move_leaves_no_trace);
     GPROJT_RUN(callbacks_outlast_drags);
     GPROJT_RUN(moves_allocate_nothing);

@@ -1196,7 +1196,7 @@ GPROJT_TEST(planes_that_spread_are_named) {
             gproj_result result;
             gproj_add_planarity(form, 1);
             if (glides) gproj_add_circularity(form, 1); /* its reasons come second */
-            if (k == 3) { /* a side and the ones beside it, without a corner */
+            if (k == 3) {                               /* a side and the ones beside it, without a corner */
                 gproj_add_fixed(form, 4, side, 1);
                 gproj_add_fixed(form, 5, next, 1);
                 gproj_add_fixed(form, 4, after + 1, 1);
@@ -1276,36 +1276,58 @@ static void gprojt_add_sheared(gprojt_soup *soup, int32_t m, int32_t n, bool spl
 
 /* The corners of a sheared grid with odd numbers of faces have angles that leave no circular faces with a boundary that
    stays: 2 (90 - 73.3) degrees of either colour too little and too much. With an even number, a free corner, a face that
-   need not be circular or a triangle there is no such reason; each part of a mesh has its own. */
+   need not be circular or flat, or a triangle, there is no such reason; each part of a mesh has its own. Where vertices
+   are held counts, and inside what is smooth. */
 GPROJT_TEST(angles_of_circles_are_named) {
-    static const char name[] = "with this boundary the sums differ by 67 degrees, most by vertex";
+    static const char name[] = "in a smooth mesh with this boundary the sums differ by 67 degrees, most by vertex";
     static const int32_t corner[1] = {7};
     static const double none[1] = {0};
     int k;
-    for (k = 0; k < 9; ++k) {
+    for (k = 0; k < 12; ++k) {
         gprojt_soup soup;
         gproj_mesh *mesh;
         gproj_form *form;
         gproj_solve_options options;
         gproj_result result;
-        int32_t circular, held;
+        int32_t circular, planar = -1, held = -1, v;
         bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6 || k == 8;
         memset(&soup, 0, sizeof soup);
         memset(&options, 0, sizeof options);
         gprojt_add_sheared(&soup, 7, k == 1 ? 8 : 7, k == 5 || k == 8, 0);
         if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
         mesh = gprojt_mesh_of(soup);
+        if (k == 11) /* a flat square, uneven inside */
+            for (v = 0; v < 64; ++v) {
+                double *p = mesh->position + 3 * v;
+                p[0] -= 0.3 * p[1] - (gproj_mesh_is_boundary_vertex(mesh, v) ? 0 : 0.2 * sin(9.0 * v));
+                p[2] = 0;
+            }
         form = gproj_form_create(mesh, NULL);
-        if (k != 7) gproj_add_planarity(form, 1);
+        if (k != 7) planar = gproj_add_planarity(form, 1);
         circular = gproj_add_circularity(form, 1);
-        held = k == 3 ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
+        if (k == 9) { /* held elsewhere, on a rectangle */
+            double to[3 * 28];
+            int32_t list[28], count = 0;
+            for (v = 0; v < mesh->vertex_count; ++v) {
+                if (!gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+                memcpy(to + 3 * count, mesh->position + 3 * v, 3 * sizeof *to);
+                to[3 * count] -= 0.3 * to[3 * count + 1];
+                list[count++] = v;
+            }
+            gproj_add_targets(form, count, list, to, 1);
+        } else {
+            held = k == 3 || k == 11 ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
+        }
+        if (k == 10) gproj_set_element_weights(form, planar, 1, corner, none);
         if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);
         if (k == 4) gproj_set_element_weights(form, circular, 1, corner, none);
         options.smooth = true;
-        result = gproj_solve(form, 60, &options);
+        result = gproj_solve(form, k < 9 ? 60 : 2, &options);
         GPROJT_CHECK((strstr(result.message, name) != NULL) == named);
+        GPROJT_CHECK((strstr(result.message, "chessboard") != NULL) == named);
         if (named) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
-        if (named) GPROJT_CHECK(strstr(result.message, " (1 face): let vertices of the boundary go") != NULL);
+        if (named)
+            GPROJT_CHECK(strstr(result.message, " (1 face): let corners or other vertices of the boundary go") != NULL);
         if (whole) GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);

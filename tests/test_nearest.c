@@ -1002,6 +1002,27 @@ GPROJT_TEST(real_meshes) {
     }
 }
 
+/* Where a direction has hardly any curvature no matrix shows a minimum: it is taken for one when slides lower nothing. */
+GPROJT_TEST(flat_minima_are_accepted) {
+    gproj_solve_options options = gprojt_nearest();
+    gproj_result result;
+    gproj_form *form;
+    gproj_mesh *mesh;
+    char path[512];
+#ifdef GPROJT_SANITIZED
+    GPROJT_SKIP("a large mesh is for plain builds");
+#endif
+    snprintf(path, sizeof path, "%s/botanic-garden.obj", gprojt_data_folder());
+    mesh = gproj_mesh_load(path, NULL, NULL);
+    if (!mesh) GPROJT_SKIP("the folder of real meshes is not there");
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1), gproj_add_gliding_boundary(form, 1);
+    result = gproj_solve(form, 200, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality <= 1e-6 && result.iterations < 190);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 static void gprojt_add_planarity(gproj_form *form, void *user) {
     (void)user;
     gproj_add_planarity(form, 1);
@@ -1045,6 +1066,7 @@ int main(void) {
     GPROJT_RUN(steps_that_turn_faces_are_refused);
     GPROJT_RUN(faces_without_area);
     GPROJT_RUN(real_meshes);
+    GPROJT_RUN(flat_minima_are_accepted);
     GPROJT_RUN(every_allocation_fails_once);
     return gprojt_report();
 }

@@ -661,29 +661,47 @@ GPROJT_TEST(later_attempts_end_early) {
     }
 }
 
+/* Saves a form in an iteration. */
+typedef struct gprojt_keeper {
+    gproj_form *form;
+    int32_t at;
+    void *state;
+    size_t size;
+} gprojt_keeper;
+
+static bool gprojt_keep_state(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    gprojt_keeper *keeper = (gprojt_keeper *)user;
+    (void)system;
+    if (iteration->number != keeper->at) return true;
+    keeper->size = gproj_state_size(keeper->form);
+    keeper->state = malloc(keeper->size);
+    return keeper->state && gproj_state_save(keeper->form, keeper->state, keeper->size, NULL) == GPROJ_OK;
+}
+
 typedef struct gprojt_meddler {
-    int32_t calls, add_at;
+    int32_t calls, add_at, iteration;
     bool added;
 } gprojt_meddler;
 
 static void gprojt_meddle(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
     gprojt_meddler *meddler = (gprojt_meddler *)user;
     static const gproj_term x = {0, -1, 1};
-    (void)progress;
+    meddler->iteration = progress->iteration + progress->unguided;
     if (++meddler->calls == meddler->add_at) meddler->added = gproj_system_add_row(system, group, 1, &x, 0, 0) >= 0;
 }
 
-/* The last refresh is that with which the mesh returns to an earlier attempt, the best one: nothing may be added then,
-   either. */
+/* The last refresh is that with which the mesh returns to an earlier attempt, the best one: it is in no iteration, and
+   nothing may be added then, either. */
 GPROJT_TEST(nothing_is_added_on_the_way_back) {
     int32_t last = 0, pass;
     for (pass = 0; pass < 2; ++pass) {
         gproj_mesh *mesh = gprojt_twisted(6, 0.3);
         gproj_solve_options options = gprojt_smooth();
         gprojt_attempts seen = {0, 0, 0, true};
-        gprojt_meddler meddler = {0, 0, false};
+        gprojt_meddler meddler = {0, 0, 0, false};
         gproj_term zero = {0, -1, 1}; /* the group's row: an unknown of its own is 0 */
         gproj_form *form = gproj_form_create(mesh, NULL);
+        double *before = gprojt_keep(mesh);
         gproj_group group;
         gproj_result result;
         memset(&group, 0, sizeof group);
@@ -697,13 +715,70 @@ GPROJT_TEST(nothing_is_added_on_the_way_back) {
         options.on_iteration = gprojt_count_iterations, options.user = &seen;
         result = gproj_solve(form, 200, &options);
         GPROJT_CHECK(result.attempts == 3 && result.iterations < seen.last); /* not the last one */
+        GPROJT_CHECK((result.outcome == GPROJ_FAILED) == (pass == 1) && meddler.iteration == 0);
+        if (pass == 1) GPROJT_CHECK(gprojt_unmoved(mesh, before));
         GPROJT_CHECK(meddler.calls == last || pass == 0);
         GPROJT_CHECK(!meddler.added && (gproj_form_error(form)->code == GPROJ_OK) == (pass == 0));
         last = meddler.calls;
         GPROJT_CHECK(last > 0);
+        free(before);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* Where the attempt for the nearest mesh counts after later ones, its wishes are told as at its end. */
+GPROJT_TEST(wishes_of_the_attempt_that_counts) {
+    gproj_group_info info[2][3];
+    int smooth, k;
+    for (smooth = 0; smooth < 2; ++smooth) {
+        gproj_mesh *mesh = gprojt_twisted(6, 0.2);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_result result;
+        int32_t group[3];
+        gproj_add_planarity(form, 1), gproj_add_circularity(form, 1);
+        group[0] = gproj_add_closeness(form, 0.2);
+        group[1] = gproj_add_tangential_fairness(form, 0.05);
+        group[2] = gproj_add_gauss_fairness(form, 0.02);
+        options.smooth = smooth, options.nearest = true;
+        result = gproj_solve(form, 60, &options);
+        GPROJT_CHECK(result.attempts > 1 && result.optimality < HUGE_VAL ? smooth : !smooth);
+        for (k = 0; k < 3; ++k) info[smooth][k] = gproj_form_group_info(form, group[k]);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    for (k = 0; k < 3; ++k) {
+        GPROJT_NEAR(info[0][k].max, info[1][k].max, 1e-9);
+        GPROJT_NEAR(info[0][k].rms, info[1][k].rms, 1e-9);
+    }
+}
+
+/* A state of an attempt after the nearest goes on as that attempt does: with its fading wishes. */
+GPROJT_TEST(attempts_after_the_nearest_are_resumed) {
+    gproj_mesh *mesh[2];
+    gproj_form *form[2];
+    gproj_solve_options options = gprojt_smooth();
+    gprojt_keeper keeper = {NULL, 61, NULL, 0};
+    gproj_result whole, resumed;
+    int k;
+    for (k = 0; k < 2; ++k) {
+        mesh[k] = gprojt_twisted(6, 0.2);
+        form[k] = gproj_form_create(mesh[k], NULL);
+        gproj_add_planarity(form[k], 1), gproj_add_circularity(form[k], 1);
+        gproj_set_schedule(form[k], gproj_add_closeness(form[k], 0.2), gproj_keep(0.2));
+    }
+    keeper.form = form[0];
+    options.nearest = true, options.on_iteration = gprojt_keep_state, options.user = &keeper;
+    whole = gproj_solve(form[0], 60, &options);
+    GPROJT_REQUIRE(keeper.state);
+    GPROJT_CHECK(gproj_state_restore(form[1], keeper.state, keeper.size, NULL) == GPROJ_OK);
+    do resumed = gproj_solve_advance(form[1], 0);
+    while (gproj_solve_is_on(form[1]));
+    GPROJT_CHECK(whole.attempts == 2 && resumed.residual == whole.residual &&
+                 gprojt_unmoved(mesh[1], mesh[0]->position));
+    free(keeper.state);
+    for (k = 0; k < 2; ++k) gproj_form_destroy(form[k]), gproj_mesh_destroy(mesh[k]);
 }
 
 /* Which of two ends counts: exact before all others, at a minimum or not, then whole, then near. */
@@ -1274,6 +1349,8 @@ int main(void) {
     GPROJT_RUN(smooth_attempts_follow_the_nearest);
     GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(loads_of_the_attempt_that_counts);
+    GPROJT_RUN(wishes_of_the_attempt_that_counts);
+    GPROJT_RUN(attempts_after_the_nearest_are_resumed);
     GPROJT_RUN(metrics_come_and_go);
     GPROJT_RUN(metrics_measure_all);
     GPROJT_RUN(points_are_solved);
