@@ -36,12 +36,14 @@
          gproj_add_planarity(form, 1.0);      // each returns the number of its group;
          gproj_add_fixed_boundary(form, 1.0); // after an error they do nothing:
          gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
-         gproj_result result = gproj_solve(form, 20, NULL);
+         gproj_solve_options options = {0};
+         options.smooth = true;               // keeps faces and edges whole
+         gproj_result result = gproj_solve(form, 200, &options);
          printf("%s\n", result.message);
          if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
          gproj_form_destroy(form);
          gproj_mesh_destroy(mesh);
-         return result.outcome == GPROJ_CONVERGED ? 0 : 1;
+         return result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 ? 0 : 1;
      }
 
    A CONSTRAINT OF YOUR OWN is rows of terms a x_i x_j and b x_i with a constant: "vertex v has height h" is as follows;
@@ -51,6 +53,8 @@
      int32_t heights = gproj_add_rows(form, "height", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, 1);
      gproj_term z = {3 * v + 2, -1, 1.0};             // 1.0 * z of vertex v, in the mesh's units
      gproj_form_add_row(form, heights, 1, &z, -h, v);
+
+   For a rise of h, say as well by bounds that all other vertices are at most so high: v need not be the highest.
 
    WORDS   The few of our own, each with the field's term:
      must hold        a hard constraint: an equation phi = 0 or a bound (inequality) phi >= 0
@@ -781,7 +785,8 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *system, int32_t g
 GPROJ_API double gproj_system_row_value(const gproj_system *system, int32_t group, int32_t row, double *gradient);
 
 /* Compares every gradient with central differences of the values; returns the largest difference found, relative
-   to the largest entry of that row's gradient and at least 1. About 1e-9 is right, 1e-3 is a wrong gradient. */
+   to the largest entry of that row's gradient and at least 1. About 1e-9 is right, 1e-3 is a wrong gradient. Rows are
+   compared with themselves: whether the terms say what was meant, gproj_system_row_value at a known place tells. */
 GPROJ_API double gproj_system_check_gradients(gproj_system *system);
 
 /* Takes at most `iterations` steps, none longer than 1e70. `options` may be NULL. */
@@ -1157,13 +1162,14 @@ typedef struct gproj_measures {
     /* For vertices with 4 or more faces: the largest difference between the angles that the faces' normals make with
        the axis, in radians. The axis is the one nearest to the bisecting planes of neighbouring faces. */
     double conicality_max;
-    double deviation_max, deviation_rms; /* |v - v_original| / the original's bounding box diagonal */
-    double displacement_mean;            /* mean |v - v_original| in the original's mean edge lengths */
-    int32_t turned_faces;                /* vectorial area against the original face's */
-    int32_t folded_edges;                /* the two faces' normals make more than 120 degrees */
-    int32_t bow_tie_faces;               /* the polygon crosses itself, seen along the normal */
-    int32_t degenerate_faces;            /* vectorial area below 1e-12 squared mean edges */
-    int32_t degenerate_edges;            /* not longer than 1e-6 mean edges; see gproj_spoiled, too */
+    double deviation_max, deviation_rms;        /* |v - v_original| / the original's bounding box diagonal */
+    double displacement_mean, displacement_max; /* of |v - v_original|, in the original's mean edge lengths */
+    int32_t displacement_vertex;                /* the vertex with displacement_max; -1: none has moved */
+    int32_t turned_faces;                       /* vectorial area against the original face's */
+    int32_t folded_edges;                       /* the two faces' normals make more than 120 degrees */
+    int32_t bow_tie_faces;                      /* the polygon crosses itself, seen along the normal */
+    int32_t degenerate_faces;                   /* vectorial area below 1e-12 squared mean edges */
+    int32_t degenerate_edges;                   /* not longer than 1e-6 mean edges; see gproj_spoiled, too */
     /* Sum over interior vertices: area of the vertex star's Gauss image, the spherical polygon of the face normals, as
        a sum of triangle areas about their mean. */
     double gauss_variation;
@@ -1711,7 +1717,7 @@ typedef struct gproj_drag_options {
 /* The state of a drag. */
 typedef struct gproj_drag_info {
     int32_t handles;
-    int32_t freedom;        /* possible independent motions of the handles, at most 3 * handles */
+    int32_t freedom;        /* possible independent motions of the handles, at most 3 * handles; 0: they cannot move */
     int32_t linearisations; /* so far: 1, or more with a residual_bound */
     int32_t solves;         /* right-hand sides solved by all linearisations */
     double behind;          /* the largest distance between a handle and its target, in the mesh's units */
@@ -16933,7 +16939,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
     double low[3] = {0, 0, 0}, high[3] = {0, 0, 0}, diagonal, edge, sum = 0, squares = 0, before[3], now[3];
     int32_t v, e, f, k;
     memset(&m, 0, sizeof m);
-    m.planarity_face = -1;
+    m.planarity_face = m.displacement_vertex = -1;
     if (!mesh) return m;
     /* 1. Sizes and shape properties. */
     normals = gproji_make_normals(mesh, mesh->position);
@@ -16966,6 +16972,7 @@ GPROJ_API gproj_measures gproj_measure(const gproj_mesh *mesh, const double *ori
         double d = gproji_distance3(mesh->position + 3 * (size_t)v, original + 3 * (size_t)v);
         sum += d, squares += d * d;
         m.deviation_max = gproji_fmax(m.deviation_max, d / diagonal);
+        if (d / edge > m.displacement_max) m.displacement_max = d / edge, m.displacement_vertex = v;
     }
     m.deviation_rms = sqrt(squares / mesh->vertex_count) / diagonal;
     m.displacement_mean = sum / mesh->vertex_count / edge;
@@ -23432,9 +23439,6 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         {"face turned over", "faces turned over"}, {"face crosses itself", "faces cross themselves"},
         {"edge folded", "edges folded"},           {"edge collapsed", "edges collapsed"},
         {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
-    static const char help[] =
-        "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary may "
-        "keep it whole";
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
     size_t size = sizeof result->message, length = strlen(result->message);
@@ -23443,12 +23447,19 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     char *text = result->message;
     gproji_damages d;
     int32_t kind;
-    bool known;
+    bool known, plain = !form->solve.loop.options.smooth && !form->solve.loop.options.nearest;
+    const char *help = plain ? "; a smooth solve may keep it whole"
+                             : "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary "
+                               "may keep it whole";
     gproji_find_damages(mesh, x, form->original, &d);
     result->spoiled = gproji_spoiled_of(&d);
     if (result->outcome != GPROJ_CONVERGED &&
-        !(form->solve.loop.options.nearest && result->residual <= result->tolerance))
-        return; /* there is worse to tell */
+        !(form->solve.loop.options.nearest && result->residual <= result->tolerance)) {
+        if (result->spoiled.total > 0) /* there is worse to tell */
+            gproji_format(text + length, size - length, "; %d faces or edges are spoiled as well%s",
+                          result->spoiled.total, plain ? ", of which a smooth solve takes care" : "");
+        return;
+    }
     if (shrunk < 0.2)
         gproji_format(text + length, size - length,
                       "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
@@ -23476,8 +23487,8 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     if (!known && form->solve.loop.options.nearest && !form->solve.loop.options.skip_guard &&
         form->solve.loop.iterations <= GPROJI_SAFE_MOST)
         gproji_format(text + length, size - length, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
-    else if (!known && length + sizeof help <= size)
-        gproji_append(text, size, length, help, sizeof help - 1);
+    else if (!known && length + strlen(help) < size)
+        gproji_append(text, size, length, help, strlen(help));
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
@@ -23824,7 +23835,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_loop *loop = &form->solve.loop;
     gproj_result *result = &loop->result;
     gproji_hooks *hooks = &loop->hooks;
-    bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended;
+    bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended, doubted;
     /* 1. What the form adds to the system's steps. */
     form->solve.futile = false;
     memset(hooks, 0, sizeof *hooks);
@@ -23857,7 +23868,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         /* More iterations would not help against what is held. */
         if (advice && result->message[length])
             memmove(result->message + (advice - result->message), advice + cut, strlen(advice + cut) + 1);
-        if (gproji_tell_unbalanced(form, result)) gproji_tell_obstacles(form, result);
+        doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
+        if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
@@ -24051,8 +24063,9 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
     solve = &form->solve;
     if (!(seconds >= 0) || (seconds > 0 && gproji_is_finite(seconds) && !form->host.clock.now))
-        return gproji_end_frames(solve, GPROJ_ERROR_ARGUMENT,
-                                 "advance: seconds must not be negative, and need a clock in the host");
+        return gproji_end_frames(
+            solve, GPROJ_ERROR_ARGUMENT,
+            "advance: seconds must not be negative, and need a clock in the host, as gproj_default_host has");
     if (solve->on && gproji_structure_of(form->system).all != solve->structure.all)
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
@@ -24885,6 +24898,7 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
 }
 
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
+    static const char stuck[] = "; the handles did not move: what must hold leaves them no freedom";
     gproj_result result;
     gproj_form *form;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
@@ -24904,6 +24918,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         }
         form->solve.finished = false;
         gproji_schedule_release(drag, false);
+        if (drag->info.freedom == 0)
+            gproji_append(result.message, sizeof result.message, strlen(result.message), stuck, sizeof stuck - 1);
     }
     if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);

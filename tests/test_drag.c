@@ -313,6 +313,12 @@ GPROJT_TEST(handles_that_cannot_follow) {
     GPROJT_NEAR(stage.mesh->position[3 * v[1] + 2] - stage.start[3 * v[1] + 2], 0.6, 1e-8);
     GPROJT_NEAR(stage.mesh->position[3 * v[1]], stage.start[3 * v[1]], 1e-9);
     gproj_drag_cancel(drag);
+    for (i = 0; i < 2; ++i) { /* the verdict tells of those without any freedom */
+        drag = gprojt_grab(&stage, 1, v + i);
+        gproj_drag_move(drag, to + 3 * i);
+        GPROJT_CHECK((gproj_drag_get_info(drag).freedom == 0) == (i == 0));
+        GPROJT_CHECK((strstr(gproj_drag_end(drag).message, "leaves them no freedom") != NULL) == (i == 0));
+    }
     gprojt_clear_stage(&stage);
 }
 

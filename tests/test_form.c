@@ -1772,7 +1772,9 @@ GPROJT_TEST(the_longest_verdict) {
     result = gproj_solve(form, 5, NULL);
     GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total > 40);
     for (k = 0; k < 6; ++k) GPROJT_CHECK(strstr(result.message, kinds[k]) != NULL);
-    GPROJT_CHECK(result.message[strlen(result.message) - 1] == ')' && strlen(result.message) > 380);
+    GPROJT_CHECK(strlen(result.message) > 380 && /* and advice, if it has room as a whole */
+                 (result.message[strlen(result.message) - 1] == ')' ||
+                  strstr(result.message, "); a smooth solve may keep it whole")));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
     free(place);

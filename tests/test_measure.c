@@ -216,6 +216,7 @@ GPROJT_TEST(planarity_of_each_face) {
     GPROJT_CHECK(gproj_measure_planarity(mesh, planarity, NULL) == largest && planarity[m.planarity_face] == largest);
     GPROJT_CHECK(gproj_measure_planarity(NULL, NULL, &sum) == 0 && sum == 0);
     GPROJT_CHECK(m.deviation_max == 0 && m.displacement_mean == 0 && m.turned_faces == 0);
+    GPROJT_CHECK(m.displacement_max == 0 && m.displacement_vertex == -1);
     free(planarity);
     gproj_mesh_destroy(mesh);
 }
@@ -369,6 +370,8 @@ GPROJT_TEST(deviation_and_displacement) {
     GPROJT_NEAR(m.deviation_max, 0.5 / diagonal, 1e-15);
     GPROJT_NEAR(m.deviation_rms, sqrt((0.25 + 0.01) / n) / diagonal, 1e-15);
     GPROJT_NEAR(m.displacement_mean, 0.6 / n / edge, 1e-15);
+    GPROJT_NEAR(m.displacement_max, 0.5 / edge, 1e-15);
+    GPROJT_CHECK(m.displacement_vertex == 1);
     /* Only the original's vertices count, not what lies behind them. */
     longer = (double *)malloc(3 * (size_t)(n + 1) * sizeof *longer);
     if (!longer) abort();

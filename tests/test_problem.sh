@@ -98,7 +98,7 @@ cat >statics.json <<'END'
 END
 "$tool" --problem statics.json -o statics.obj --quiet --forces forces.csv --allow-spoiled >out.txt 2>&1 ||
     fail "statics.json: $(cat out.txt)"
-grep -q '^support,42$' forces.csv && pass || fail 'a roller is no support'
+grep -q '^support,42,0,' forces.csv && ! grep '^support,' forces.csv | grep -qv '^support,[0-9]*,[^,]*,[^,]*,[^,]*$' && pass || fail 'a roller is no support'
 awk -F, -v of=statics.obj 'BEGIN { while ((getline line <of) > 0) if (split(line, a, " ") == 4 && a[1] == "v") { for (k = 0; k < 3; k++)
         p[n, k] = a[k + 2]; n++ } }
     $1 == "edge" { l = 0; for (k = 0; k < 3; k++) l += (p[$2, k] - p[$3, k])^2; force = $4 * sqrt(l)

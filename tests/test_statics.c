@@ -2315,6 +2315,29 @@ GPROJT_TEST(huge_forces_are_no_equilibrium) {
     free(w);
 }
 
+/* Where the mesh shrinks to a point, because nothing supports it, the verdict says so. */
+GPROJT_TEST(meshes_without_support) {
+    int smooth;
+    for (smooth = 0; smooth < 2; ++smooth) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 6, 2, 0.6);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_supports none;
+        gproj_solve_options options;
+        gproj_result result;
+        memset(&none, 0, sizeof none);
+        memset(&options, 0, sizeof options);
+        loads.density = 1, options.smooth = smooth;
+        gproj_add_equilibrium(form, &loads, &none, 1);
+        result = gproj_solve(form, 100, &options);
+        GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
+        GPROJT_CHECK(strstr(result.message, "has no support that could carry its loads") != NULL);
+        GPROJT_CHECK((strstr(result.message, "spoiled as well") != NULL) == (result.spoiled.total > 0));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Loads far from 1 are found forces for; those whose squares overflow are refused, by the solve as well. */
 GPROJT_TEST(loads_of_any_size) {
     static const double size[] = {1, 1e-100, 1e100, 1e200};
@@ -2409,6 +2432,7 @@ int main(void) {
     GPROJT_RUN(prestressed_net);
     GPROJT_RUN(a_point_is_no_equilibrium);
     GPROJT_RUN(huge_forces_are_no_equilibrium);
+    GPROJT_RUN(meshes_without_support);
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);

@@ -623,7 +623,10 @@ run sheared.obj -o free.obj --planar --circular --glide boundary --free 7
 [ $status -eq 0 ] && pass || fail "--glide boundary --free 7: $status"
 run sheared.obj -o free.obj --planar --circular --glide boundary
 [ $status -eq 1 ] && grep -q "the sums differ by 67 degrees" out.txt err.txt && pass || fail "angles of a sheared boundary: $status"
-expect 2 "is about --fix and --glide" grid.obj -o new.obj --planar --free 3
+expect 2 "vertex 3 is held by no --fix and --glide" grid.obj -o new.obj --planar --free 3
+expect 2 "vertex 40 is held by no --fix and --glide" grid.obj -o new.obj --planar --glide boundary --free 8,40
+expect 2 "--free lets all of these go" grid.obj -o new.obj --planar --fix 5,8 --free 8,5
+expect 2 "this names no vertex" grid.obj -o new.obj --planar --fix 5 --free ''
 expect 2 "there is no vertex 81" grid.obj -o new.obj --planar --fix boundary --free 81
 awk -v h=0.6 "$height"'BEGIN {
     for (k = 0; k < 32; k++) {
@@ -753,6 +756,9 @@ run vault.obj -o new.obj --equilibrium --compressive --snow 1 --density 0.2 --gl
 balanced "snow" 'low >= -1e-9 * high'
 run vault.obj -o new.obj --equilibrium --forces forces.csv --supports corners --fix corners
 balanced "four supports" 'supports == 4'
+awk -F, '$1 == "load" || $1 == "support" { for (k = 0; k < 3; k++) sum[k] += $(k + 3); most += $5 < 0 ? -$5 : $5 }
+    END { for (k = 0; k < 3; k++) bad += sum[k] > 1e-8 * most || sum[k] < -1e-8 * most; exit bad > 0 || most == 0 }' forces.csv &&
+    pass || fail "reactions and loads do not add up to nothing"
 awk '/^v / { $4 = -$4 } { print }' vault.obj >net.obj
 run net.obj -o new.obj --equilibrium --tensile --fix boundary --forces forces.csv
 balanced "hanging net" 'high <= -1e-9 * low'

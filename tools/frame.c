@@ -345,8 +345,8 @@ static bool read_named(const char *line, size_t size, const char *name, int32_t 
            gprojx_read_fields(line + length, size - length, count, field);
 }
 
-/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I, which holds
-   only where no option says what is held. */
+/* Reads a line of the forces: edge,I,J,W with the compression W |v_I - v_J|, load,I,FX,FY,FZ or support,I with a
+   reaction or without, which holds only where no option says what is held. */
 static bool read_force(tool *t, const char *line, size_t size, int32_t number, gproj_error *error) {
     int32_t count = t->mesh->vertex_count, e, k;
     double field[4];
@@ -364,12 +364,12 @@ static bool read_force(tool *t, const char *line, size_t size, int32_t number, g
     } else if (read_named(line, size, "load,", 4, field)) {
         if (!gprojx_check_vertex(field[0], count, number, error)) return false;
         memcpy(t->form_load + 3 * (size_t)field[0], field + 1, 3 * sizeof *field);
-    } else if (read_named(line, size, "support,", 1, field)) {
+    } else if (read_named(line, size, "support,", 4, field) || read_named(line, size, "support,", 1, field)) {
         if (!gprojx_check_vertex(field[0], count, number, error)) return false;
         for (k = 0; k < 3 && !t->support[0].which; ++k) t->frame.held[6 * (size_t)field[0] + (size_t)k] = true;
     } else
-        return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "line %ld: expected edge,I,J,W or load,I,FX,FY,FZ or support,I",
-                             (long)number);
+        return gprojx_refuse(error, GPROJ_ERROR_SYNTAX,
+                             "line %ld: expected edge,I,J,W or load,I,FX,FY,FZ or support,I,...", (long)number);
     return true;
 }
 

@@ -125,7 +125,7 @@ typedef struct tool {
     double weld;      /* in mean edge lengths */
     gprojx_encoding encoding;
     tool_demand planar, circular, conical, equal_lengths, edge_length, face_area, total_area, cost, volume, equilibrium,
-        supports, loose, reference, closeness, equal_areas;
+        supports, freed, reference, closeness, equal_areas;
     tool_demand own[MOST_OPTIONS];   /* by row: options that only their builders read */
     double length_price, area_price; /* --cost */
     double density, area_load, snow;
@@ -178,7 +178,7 @@ typedef struct tool {
     double *imbalance_before, *imbalance; /* each face's load that the best forces leave unbalanced */
     double *density_of_edge, *force_in_edge;
     bool *is_support;
-    bool *is_loose;  /* which vertices --free names; NULL: it is not given */
+    uint8_t *loose;  /* per vertex: 1 if --free names it, 2 if that lets it go; NULL: it is not given */
     uint8_t *slides; /* by vertex: the free axes of rollers; NULL: there are none */
     gproj_forces forces;
     gproj_measures before, after;
@@ -752,7 +752,7 @@ static bool prepare_outputs(tool *t) {
             if (!keep_apart(t, output, t->glide[j].text, t->glide[j].length)) return false;
         if (t->loads && !keep_apart(t, output, t->loads, strlen(t->loads))) return false;
         if (t->supports.text && !keep_apart(t, output, t->supports.text, t->supports.length)) return false;
-        if (t->loose.text && !keep_apart(t, output, t->loose.text, t->loose.length)) return false;
+        if (t->freed.text && !keep_apart(t, output, t->freed.text, t->freed.length)) return false;
         if (t->reference.text && !keep_apart(t, output, t->reference.text, t->reference.length)) return false;
     }
     return true;
@@ -1238,9 +1238,9 @@ static bool read_mesh(tool *t) {
 /* ---- builders: each adds what an option asks for to the form ---- */
 
 /* Do --fix and --glide leave this vertex out? */
-static bool is_free(const tool *t, int32_t vertex) {
+static bool is_free(tool *t, int32_t vertex) {
     int32_t i;
-    if (t->is_loose && t->is_loose[vertex]) return true;
+    if (t->loose && t->loose[vertex]) return t->loose[vertex] = 2, true;
     for (i = 0; i < t->move_count; ++i)
         if (t->move[i].vertex == vertex && t->move[i].weight > 0) return true;
     return false;
@@ -1291,11 +1291,24 @@ static bool mark_vertices(tool *t, const char *option, const tool_demand *word, 
 
 /* Notes which vertices --fix and --glide are to leave out. */
 static int32_t add_loose(tool *t, const tool_demand *demand) {
-    if (t->fix_count + t->glide_count == 0)
-        return fail(t, EXIT_USAGE, "--free is about --fix and --glide: add one of these"), -1;
-    t->is_loose = (bool *)take(t, (size_t)t->mesh->vertex_count, sizeof *t->is_loose);
-    if (t->is_loose) mark_vertices(t, "--free", demand, t->is_loose);
+    size_t vertices = (size_t)t->mesh->vertex_count, i;
+    bool *mark = (bool *)take(t, vertices, sizeof *mark);
+    t->loose = (uint8_t *)take(t, vertices, sizeof *t->loose);
+    if (mark && t->loose && mark_vertices(t, "--free", demand, mark))
+        for (i = 0; i < vertices; ++i) t->loose[i] = mark[i];
+    free(mark);
     return -1;
+}
+
+/* Fails if --free names a vertex that is in no --fix and --glide, or none at all. */
+static bool check_loose(tool *t) {
+    int32_t i;
+    bool any = false;
+    for (i = 0; i < t->mesh->vertex_count; ++i) {
+        any = any || t->loose[i];
+        if (t->loose[i] == 1) return fail(t, EXIT_USAGE, "--free: vertex %ld is held by no --fix and --glide", (long)i);
+    }
+    return any || fail(t, EXIT_USAGE, "--free: this names no vertex");
 }
 
 /* Adds one group for each --fix, without vertices that are free. */
@@ -1320,6 +1333,10 @@ static int32_t add_fixed(tool *t, const tool_demand *none) {
         }
         for (count = i = 0; i < t->mesh->vertex_count; ++i)
             if (mark[i] && !is_free(t, i)) list[count++] = i;
+        if (count == 0 && t->loose && t->fix[k].weight > 0) {
+            fail(t, EXIT_USAGE, "--fix %.*s: --free lets all of these go", (int)t->fix[k].length, t->fix[k].text);
+            break;
+        }
         if (count > 0 && t->fix[k].weight > 0) gproj_add_fixed(t->form, count, list, t->fix[k].weight);
     }
     free(mark), free(list);
@@ -1380,7 +1397,7 @@ static bool add_gliding(tool *t, const tool_demand *word) {
         if (t->mesh->loop_count == 0)
             return fail(t, EXIT_USAGE, "--glide boundary: the mesh is closed and has no boundary");
         for (i = 0; i < t->mesh->vertex_count; ++i)
-            all = all && !(gproj_mesh_is_boundary_vertex(t->mesh, i) && is_free(t, i));
+            if (gproj_mesh_is_boundary_vertex(t->mesh, i) && is_free(t, i)) all = false;
         if (all) {
             if (word->weight > 0) gproj_add_gliding_boundary(t->form, word->weight);
             return true;
@@ -1660,8 +1677,8 @@ static const tool_option options[] = {
      "the enclosed volume (with a boundary: the volume over the plane z = 0) is V, or xF: F times that of the mesh as "
      "the solve begins",
      set_volume, PLACE(volume), HARD, SIZES, .add = add_volume},
-    {"free", "WHICH", "vertices that --fix and --glide leave out. WHICH: as in --fix", set_vertices, SETS(loose),
-     .stage = SIZES, .add = add_loose},
+    {"free", "WHICH", "vertices that --fix and --glide leave out, free to go anywhere. WHICH: as in --fix",
+     set_vertices, SETS(freed), .stage = SIZES, .add = add_loose},
     {"fix", "WHICH[=W]",
      "vertices stay where they are. WHICH: boundary, corners, a list such as 0,7,20-29, or a file of such numbers",
      add_fix, 0, HARD, SIZES, .add = add_fixed, .repeatable = true},
@@ -1746,7 +1763,8 @@ static const tool_option options[] = {
     {"report", "FILE", "JSON: counts, every iteration, verdict, measures, seconds", set_output,
      SETS(output[OUTPUT_REPORT]), .section = "out"},
     {"forces", "FILE",
-     "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and support,I",
+     "CSV: lines edge,I,J,W with the force W(v_I - v_J) on I (W > 0: compression), load,I,FX,FY,FZ and "
+     "support,I,RX,RY,RZ with the reaction",
      set_output, SETS(output[OUTPUT_FORCES]), .needs = &statics},
     {"residuals", "FILE",
      "CSV: group,place,element,residual, what each vertex, edge and face lacks (mean edge lengths)", set_output,
@@ -2364,6 +2382,7 @@ static bool build_form(tool *t) {
             if (t->seen[i] && (int)options[i].stage == stage && !add_option(t, i)) return false;
         }
     t->line = 0;
+    if (t->loose && !check_loose(t)) return false;
     if (gproj_form_error(t->form)->code != GPROJ_OK) return fail_library(t, NULL, gproj_form_error(t->form));
     if (t->problem_path && !gprojx_problem_build(&t->problem, &error)) return fail_problem(t, &error);
     return set_weights(t) && (!t->start_forces || start_from_forces(t));
@@ -2730,26 +2749,30 @@ static void write_number(FILE *file, double value, char after) {
     fputc(after, file);
 }
 
+/* Writes the line KIND,I,X,Y,Z. */
+static void write_vector(FILE *file, const char *kind, int32_t vertex, const double vector[3]) {
+    fprintf(file, "%s,%ld,", kind, (long)vertex);
+    write_number(file, vector[0], ',');
+    write_number(file, vector[1], ',');
+    write_number(file, vector[2], '\n');
+}
+
 static gproj_code write_forces(tool *t, FILE *file) {
     const gproj_mesh *mesh = t->mesh;
-    double *load = (double *)take(t, 3 * (size_t)mesh->vertex_count, sizeof *load);
+    double *vector = (double *)take(t, 3 * (size_t)mesh->vertex_count, sizeof *vector);
     int32_t i;
-    if (!load) return GPROJ_ERROR_MEMORY;
-    gproj_get_loads(t->form, load, NULL);
+    if (!vector) return GPROJ_ERROR_MEMORY;
     fputs("kind,i,j or fx,w or fy,fz\n", file);
     for (i = 0; i < mesh->edge_count; ++i) {
         fprintf(file, "edge,%ld,%ld,", (long)mesh->origin[2 * i], (long)mesh->origin[2 * i + 1]);
         write_number(file, t->density_of_edge[i], '\n');
     }
-    for (i = 0; i < mesh->vertex_count; ++i) {
-        fprintf(file, "load,%ld,", (long)i);
-        write_number(file, load[3 * (size_t)i], ',');
-        write_number(file, load[3 * (size_t)i + 1], ',');
-        write_number(file, load[3 * (size_t)i + 2], '\n');
-    }
+    gproj_get_loads(t->form, vector, NULL);
+    for (i = 0; i < mesh->vertex_count; ++i) write_vector(file, "load", i, vector + 3 * (size_t)i);
+    gproj_get_reactions(t->form, vector, NULL);
     for (i = 0; i < mesh->vertex_count; ++i)
-        if (t->is_support[i]) fprintf(file, "support,%ld\n", (long)i);
-    free(load);
+        if (t->is_support[i]) write_vector(file, "support", i, vector + 3 * (size_t)i);
+    free(vector);
     return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
 }
 
@@ -2948,8 +2971,9 @@ static void print_summary(const tool *t) {
         printf("conicality    %.2e -> %.2e largest (radians)\n", b->conicality_max, a->conicality_max);
     if (t->offset) print_offset(t);
     if (t->panels) print_panels(t);
-    printf("displacement  %.3g mean edge lengths on average, at most %.3g of the bounding-box diagonal\n",
-           a->displacement_mean, a->deviation_max);
+    printf("displacement  %.3g mean edge lengths on average, at most %.3g", a->displacement_mean, a->displacement_max);
+    if (a->displacement_vertex >= 0) printf(" (vertex %ld)", (long)a->displacement_vertex);
+    putchar('\n');
     print_asked(t);
     printf("faces         %ld turned over, %ld -> %ld bow-ties, %ld collapsed\n", (long)a->turned_faces,
            (long)b->bow_tie_faces, (long)a->bow_tie_faces, (long)t->result.spoiled.collapsed_faces);
@@ -2996,7 +3020,7 @@ static void clean_up(tool *t) {
     for (i = 0; i < MOST_LEVELS; ++i) gproj_stencil_destroy(t->followers[i]);
     gprojx_threads_destroy(t->pool);
     free(t->curve), free(t->fix), free(t->glide), free(t->move), free(t->move_group);
-    free(t->point_load), free(t->is_support), free(t->is_loose), free(t->density_of_edge), free(t->force_in_edge);
+    free(t->point_load), free(t->is_support), free(t->loose), free(t->density_of_edge), free(t->force_in_edge);
     free(t->imbalance_before), free(t->imbalance);
     free(t->original), free(t->planarity_before), free(t->planarity), free(t->shade);
     gprojx_history_free(&t->history);

@@ -273,6 +273,8 @@ static void gprojx_report_measures(gprojx_json *j, const char *key, const gproj_
     gprojx_json_number(j, "deviation_max", m->deviation_max);
     gprojx_json_number(j, "deviation_rms", m->deviation_rms);
     gprojx_json_number(j, "displacement_mean", m->displacement_mean);
+    gprojx_json_number(j, "displacement_max", m->displacement_max);
+    gprojx_json_integer(j, "displacement_vertex", m->displacement_vertex);
     gprojx_json_integer(j, "turned_faces", m->turned_faces);
     gprojx_json_integer(j, "folded_edges", m->folded_edges);
     gprojx_json_integer(j, "bow_tie_faces", m->bow_tie_faces);

@@ -74,6 +74,7 @@ def _enum(name, python, prefix, members, values=None):
     """Defines an enumeration of the header, whose members follow each other from 0."""
     members = members.split()
     enum = IntEnum(python, list(zip(members, values or range(len(members)))), module=__name__)
+    enum.__str__ = lambda member: f"{python}.{member.name}"
     enum.prefix = prefix
     ENUMS[name] = enum
     _TYPES[name.replace("gproj_", "")] = type(name, (c_int32,), {"enum": enum})
@@ -159,8 +160,9 @@ _struct("gproj_curve_hit", "double[3] point, tangent; double distance; int32 seg
 _struct("gproj_surface_hit", "double[3] point, normal; double distance; int32 face")
 _struct("gproj_measures", "double mean_edge, min_edge, max_edge, length, area, min_face_area, max_face_area, "
         "planarity_max, planarity_mean; int32 planarity_face; double circularity_max, area_spread, diagonal_max, "
-        "conicality_max, deviation_max, deviation_rms, displacement_mean; int32 turned_faces, folded_edges, "
-        "bow_tie_faces, degenerate_faces, degenerate_edges; double gauss_variation")
+        "conicality_max, deviation_max, deviation_rms, displacement_mean, displacement_max; int32 "
+        "displacement_vertex, turned_faces, folded_edges, bow_tie_faces, degenerate_faces, degenerate_edges; double "
+        "gauss_variation")
 _struct("gproj_offset_measures", "double face_distance_min, face_distance_max, vertex_distance_min, "
         "vertex_distance_max, parallel_max, support_planarity_max; int32 reversed_edges")
 _FillOptions = _struct("gproj_fill_options", "int32 corner_count; pointer corners; int32 side_count; "
