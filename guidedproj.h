@@ -1555,10 +1555,11 @@ GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const g
 
    gproj_solve_begin loads the positions and takes no step; false: it was refused, see `error` (may be NULL).
    gproj_solve_advance takes as many iterations as fit into `seconds` by the host's clock, judged by those before, and
-   at least one; 0 seconds: one, and INFINITY: all that are left, without a clock. It writes the positions and returns
-   the state of the solve: GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations,
-   schedules and, in the end, the bytes are those of one gproj_solve. Between two frames weights may be changed and
-   targets moved; vertices are moved by targets, or before another gproj_solve_begin: positions are only written.
+   at least one; 0 seconds: one, and INFINITY: all that are left, without a clock. The first frame also analyses the
+   matrix, which may take as long as several iterations. It writes the positions and returns the state of the solve:
+   GPROJ_TIME_OUT while it is on, then the verdict, which further calls repeat. Iterations, schedules and, in the end,
+   the bytes are those of one gproj_solve. Between two frames weights may be changed and targets moved; vertices are
+   moved by targets, or before another gproj_solve_begin: positions are only written.
    gproj_solve_stop ends it at the present positions; so do gproj_solve, gproj_drag_begin and another gproj_solve_begin
    (in a callback none of them does: return false there).
    If groups or rows were added in between it fails. After a failure, such as seconds without a clock in the host, or an
@@ -1743,13 +1744,13 @@ GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
 GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
-/* Releases the handles: guided projection, 10 iterations, from the mesh before the drag. (A face that has turned over
-   under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the handles go
-   to their present positions, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences in the change, not in
-   the shape, so that features stay), and with 0.001 * 0.9^n all vertices keep their positions before the drag; then
-   nothing is wished. The form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds the groups
-   "drag fairness" and "drag handles" to the form, so it is analysed anew. If there was no room to follow
-   (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that 10
+/* Releases the handles: guided projection, at most 20 iterations, from the mesh before the drag. (A face that has
+   turned over under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the
+   handles go to their present positions, with 0.2 * 0.9^n the mesh keeps the fairness it had (differences in the
+   change, not in the shape, so that features stay), and with 0.001 * 0.9^n all vertices keep their positions before the
+   drag; then nothing is wished. The form's own wishes rest (see keep_wishes). Destroys the drag. The first release adds
+   the groups "drag fairness" and "drag handles" to the form, so it is analysed anew. If there was no room to follow
+   (gproj_drag_residual well above 0.1) the handles may end far from their targets. If the result says that these
    iterations were not enough, gproj_solve goes on; after an error the mesh is as before the drag. */
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
 /* Begins that release in frames, for programs that draw between iterations: gproj_solve_advance goes on, and moves are
@@ -24359,7 +24360,7 @@ enum {
     GPROJI_DRAG_ROUNDS = 2,      /* solves for each response */
     GPROJI_DRAG_DAMPINGS = 3,    /* of a step that takes the residual off */
     GPROJI_DRAG_SIDES = 3,       /* right-hand sides solved together */
-    GPROJI_DRAG_ITERATIONS = 10, /* release: all iterations, */
+    GPROJI_DRAG_ITERATIONS = 20, /* release: all iterations, */
     GPROJI_DRAG_GUIDED = 5       /* and those with guidance */
 };
 
@@ -24899,6 +24900,7 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
 
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
     static const char stuck[] = "; the handles did not move: what must hold leaves them no freedom";
+    static const char more[] = "; gproj_solve goes on from here";
     gproj_result result;
     gproj_form *form;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
@@ -24920,6 +24922,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         gproji_schedule_release(drag, false);
         if (drag->info.freedom == 0)
             gproji_append(result.message, sizeof result.message, strlen(result.message), stuck, sizeof stuck - 1);
+        if (result.outcome == GPROJ_ITERATION_LIMIT)
+            gproji_append(result.message, sizeof result.message, strlen(result.message), more, sizeof more - 1);
     }
     if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);
