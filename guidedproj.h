@@ -23978,7 +23978,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
             double seconds = result.seconds[k] + other.seconds[k];
             result.seconds[k] = other.seconds[k] = seconds;
         }
-        if (here) result = other, away = wished;
+        if (here) result = other, away = options->nearest;
     }
     if (!here) gproji_return_to(form, end, load_scale, options->nearest && !away);
     if (!here && !gproji_form_ready(form)) { /* a refresh has failed there */
@@ -23991,7 +23991,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
                       attempt);
     }
-    if (away && result.outcome != GPROJ_FAILED) {
+    if (away && wished && result.outcome != GPROJ_FAILED) {
         if (result.outcome == GPROJ_CONVERGED) result.outcome = GPROJ_ITERATION_LIMIT;
         result.optimality = HUGE_VAL;
         gproji_append(result.message, sizeof result.message, strlen(result.message), guided, sizeof guided - 1);

@@ -754,6 +754,28 @@ GPROJT_TEST(wishes_of_the_attempt_that_counts) {
     }
 }
 
+/* Where nothing is wished there is no minimum to miss: later attempts converge like others. */
+GPROJT_TEST(nothing_wished_after_the_nearest) {
+    int32_t limit, later = 0;
+    for (limit = 4; limit <= 24; limit += 4) {
+        gproj_mesh *mesh = gprojt_twisted(6, 0.2);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_result result;
+        gproj_add_planarity(form, 1), gproj_add_circularity(form, 1);
+        options.nearest = options.skip_closeness = true;
+        result = gproj_solve(form, limit, &options);
+        if (result.attempts > 1 && result.residual <= result.tolerance) {
+            ++later;
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality < HUGE_VAL);
+            GPROJT_CHECK(strstr(result.message, "have only guided") == NULL);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(later > 0);
+}
+
 /* A state of an attempt after the nearest goes on as that attempt does: with its fading wishes. */
 GPROJT_TEST(attempts_after_the_nearest_are_resumed) {
     gproj_mesh *mesh[2];
@@ -1350,6 +1372,7 @@ int main(void) {
     GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(loads_of_the_attempt_that_counts);
     GPROJT_RUN(wishes_of_the_attempt_that_counts);
+    GPROJT_RUN(nothing_wished_after_the_nearest);
     GPROJT_RUN(attempts_after_the_nearest_are_resumed);
     GPROJT_RUN(metrics_come_and_go);
     GPROJT_RUN(metrics_measure_all);
