@@ -1333,10 +1333,10 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight);
 /* Faces with more than 3 sides have a circumcircle: with planar faces (gproj_add_planarity as well), there is a point
    c_k on the circle's axis with (v_j - v_i)'((v_i + v_j)/2 - c_k) = 0 for every edge (paper 3.5). c_k are variables
    that start at the circumcentre. Without planarity the vertices only lie on a sphere about c_k. A face with a doubled
-   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them). It must
-   where the boundary stays and its corners have the wrong angles: vertices of quads can be coloured like the squares of
-   a chessboard, and in a convex quad with a circumcircle the two angles of each colour add up to 180 degrees, so over
-   the mesh both colours have the same sum. The verdict tells if they cannot. */
+   vertex is circular, too: a mesh far from circular may lose short edges (gproj_result.spoiled counts them), and so
+   does one whose boundary stays and has corners of the wrong angles. For vertices of quads can be coloured like the
+   squares of a chessboard, and in a convex quad with a circumcircle the two angles of each colour add up to 180
+   degrees: over a smooth mesh both colours have the same sum. The verdict tells where they cannot. */
 GPROJ_API int32_t gproj_add_circularity(gproj_form *form, double weight);
 /* The face planes around a vertex touch a common cone: their unit normals n_i make one angle with the cone's axis a_v,
    a_v'(n_i - n_(i+1)) = 0 and a_v'a_v = 1 (paper 3.5; Liu et al. 2006). The rows put the axis into the bisecting planes
