@@ -23458,7 +23458,7 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         !(form->solve.loop.options.nearest && result->residual <= result->tolerance)) {
         if (result->spoiled.total > 0) /* there is worse to tell */
             gproji_format(text + length, size - length, "; %d faces or edges are spoiled as well%s",
-                          result->spoiled.total, plain ? ", of which a smooth solve takes care" : "");
+                          result->spoiled.total, plain ? ": a smooth solve may do better" : "");
         return;
     }
     if (shrunk < 0.2)
@@ -24600,7 +24600,6 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     gproj_system *s;
     double *x, bound, most, residual;
     int32_t k, j, c, handles;
-    bool lost;
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
@@ -24621,16 +24620,18 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     bound = drag->options.residual_bound > 0 ? drag->options.residual_bound : HUGE_VAL;
     most = gproji_fmax(bound, gproji_drag_most);
     residual = gproji_follow_handles(drag, most, 1);
-    /* 2. Beyond the bound: linearise at x, and go on to the handles from there, if the residual does not grow. After a
-       jump that leaves too much, handles could not come back from x: go on from the mesh before the drag. */
-    lost = !(residual <= most); /* also where it is no number */
-    if (!(residual <= bound) && gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK)
-        return gproji_undo_move(drag, info);
-    if (lost) {
-        memcpy(x, drag->before.x, (size_t)drag->variables * sizeof *x);
-        if (gproji_linearise_drag(drag, false, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
+    /* 2. Beyond the bound: linearise at x, which refuses the move if it cannot be done there, and go on to the handles
+       from there, if the residual does not grow. After a jump that leaves too much, handles could not come back from
+       x: go on from the mesh before the drag. */
+    if (!(residual <= bound)) { /* also where it is no number */
+        bool lost = !(residual <= most);
+        if (gproji_linearise_drag(drag, true, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
+        if (lost) {
+            memcpy(x, drag->before.x, (size_t)drag->variables * sizeof *x);
+            if (gproji_linearise_drag(drag, false, &drag->error) != GPROJ_OK) return gproji_undo_move(drag, info);
+        }
+        gproji_follow_handles(drag, lost ? most : residual, lost ? 1 : 0);
     }
-    if (!(residual <= bound)) gproji_follow_handles(drag, lost ? most : residual, lost ? 1 : 0);
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
 }
