@@ -12068,7 +12068,10 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
             loop->waited = 0;
         }
         if (!gproji_report_iteration(loop, n)) return GPROJ_CANCELLED;
-        if (s->changed) gproji_see_nearest(loop);
+        if (s->changed) { /* other wishes: energies before do not compare */
+            gproji_see_nearest(loop);
+            loop->waited = 0, loop->best.residual = HUGE_VAL;
+        }
     }
     if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
     return gproji_is_nearest(loop) ? GPROJ_CONVERGED : GPROJ_ITERATION_LIMIT;
