@@ -22912,10 +22912,10 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 /* -- demands that can never hold -- */
 
 /* Marks coordinates that a constraint prescribes by a row with a single term, and those of corners that a gliding
-   boundary keeps: held[i] = 1, value[i] the prescribed value; else both are 0. Returns the number of vertices with
-   three such coordinates. */
+   boundary keeps: held[i] = 1, value[i] the prescribed value; others of vertices that glide: held[i] = -1; else both
+   are 0. Returns the number of vertices with three prescribed coordinates. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
-    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, k, count = 0;
+    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
     const gproji_part *part;
     memset(held, 0, (size_t)coordinates * sizeof *held);
     memset(value, 0, (size_t)coordinates * sizeof *value);
@@ -22936,11 +22936,14 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
     for (part = form->part; part; part = part->next) {
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            size_t v = 3 * (size_t)part->element[i];
-            if (gproji_curve_at(part, i) || !(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0))
-                continue;
-            for (k = 0; k < 3; ++k) held[v + (size_t)k] = 1;
-            gproji_copy3(form->original + v, value + v);
+            size_t v = 3 * (size_t)part->element[i], c;
+            if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
+            if (!gproji_curve_at(part, i)) gproji_copy3(form->original + v, value + v);
+            for (c = v; c < v + 3; ++c)
+                if (!gproji_curve_at(part, i))
+                    held[c] = 1;
+                else if (held[c] == 0)
+                    held[c] = -1;
         }
     }
     for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
@@ -22994,8 +22997,8 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
    vertex to the next. */
 typedef struct gproji_spread {
     const gproj_form *form;
-    double *held;        /* 3 for each k: is vertex k held; the last plane that it was looked at for, negative if it is
-                            not in that one; the k-th vertex of the queue */
+    double *held;        /* 3 for each k: 1 if vertex k is held, -1 if it glides, else 0; the last plane that it was
+                            looked at for, negative if it is not in that one; the k-th vertex of the queue */
     const double *value; /* 3 per vertex: the place of a held one */
     double point[3], normal[3];
     int32_t plane;  /* number of this one, from 1 */
@@ -23033,9 +23036,7 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
     if (fabs(*looked) == s->plane) return *looked > 0;
     *looked = -s->plane;
     if (gproji_stays(s, v)) *looked = gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
-    if (gproji_stays(s, v) || !gproj_mesh_is_boundary_vertex(mesh, v) ||
-        !gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule))
-        return *looked > 0;
+    if (!(s->held[3 * (size_t)v] < 0)) return *looked > 0;
     /* From one held vertex to the next; around the whole boundary if there is none. */
     first = mesh->prev[mesh->vertex_halfedge[v]], last = mesh->vertex_halfedge[v];
     while (first != mesh->vertex_halfedge[v] && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
@@ -23045,7 +23046,8 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
         if (e == last) break;
     }
     for (e = last;; e = mesh->prev[e]) {
-        if (!gproji_stays(s, mesh->origin[e])) s->held[3 * (size_t)mesh->origin[e] + 1] = in ? s->plane : -s->plane;
+        double *at = &s->held[3 * (size_t)mesh->origin[e]];
+        if (at[0] < 0) at[1] = in ? s->plane : -s->plane;
         if (e == first) break;
     }
     return *looked > 0;
@@ -23079,13 +23081,12 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
 /* Finds the plane of a face by the places of those that are held or glide, and spreads it as far as it goes. */
 GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
-    bool glides = gproji_rule_is_on(s->form, &gproji_gliding_boundary_rule);
     double offset[GPROJI_HELD_MOST][3];
     int32_t h = mesh->face_halfedge[face], kept = 0, c, head;
     s->count = 0, s->vertex = -1, s->off = 0;
     for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
-        if (!gproji_stays(s, v) && !(glides && gproj_mesh_is_boundary_vertex(mesh, v))) continue;
+        if (s->held[3 * (size_t)v] == 0) continue;
         if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
         gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
     }
@@ -23174,8 +23175,7 @@ GPROJI_INTERNAL double gproji_held_angle(const gproji_spread *s, int32_t v) {
 }
 
 /* Says by how much the two sums differ in a part of the mesh whose boundary stays, and which vertex has the largest
-   share in that. Here held[3 v] says whether vertex v is held, 1, or becomes -1 if it glides; [3 v + 1] becomes the
-   colour, 1 or -1, and [3 k + 2] the k-th vertex of a queue. */
+   share in that. Here held[3 v + 1] becomes the colour of vertex v, 1 or -1. */
 GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) {
     static const double noticeable = 0.1; /* radians; less may be the curvature */
     const gproj_form *form = s->form;
@@ -23184,7 +23184,7 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     size_t length = strlen(result->message);
     double *held = s->held, most = noticeable;
     int32_t vertex = -1, count = 0, faces, v, i;
-    /* 1. Every face is to be flat and circular. Which vertices glide, and over which kinks? */
+    /* 1. Is every face to be flat and circular? */
     if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return;
     for (part = form->part; part; part = part->next) {
         const gproji_group *g = gproji_group_at(form->system, part->group);
@@ -23192,16 +23192,13 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
             if (i == g->row_count) break;
             if (!(g->row[i].weight > 0)) return;
         }
-        if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
-        for (i = 0; i < part->count; ++i) {
-            v = part->element[i];
-            if (held[3 * (size_t)v] != 0 || !(g->row[3 * i].weight > 0)) continue;
-            held[3 * (size_t)v] = -1;
-            most = gproji_fmax(most, noticeable + fabs(GPROJI_PI - gproji_held_angle(s, v)));
-        }
     }
-    for (v = 0; v < mesh->vertex_count; ++v) held[3 * (size_t)v + 1] = 0;
-    /* 2. Each part of the mesh is coloured from one vertex on. Regular faces have the same sums, so only what a vertex
+    /* 2. Along a curve with kinks the sums may differ by as much. */
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        held[3 * (size_t)v + 1] = 0;
+        if (held[3 * (size_t)v] < 0) most = gproji_fmax(most, noticeable + fabs(GPROJI_PI - gproji_held_angle(s, v)));
+    }
+    /* 3. Each part of the mesh is coloured from one vertex on. Regular faces have the same sums, so only what a vertex
        has more than in these is summed. With a face that has an odd number of corners there are no such colours. */
     for (v = 0; v < mesh->vertex_count; ++v) {
         double sum = 0, largest[2] = {0, 0};
@@ -23272,7 +23269,8 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         spread.form = form, spread.held = held, spread.value = value;
         for (v = 0; v < form->mesh->vertex_count; ++v) { /* one number for each vertex, and room for two */
             double *of = held + 3 * (size_t)v;
-            of[0] = of[0] + of[1] + of[2] == 3;
+            bool held_all = of[0] + of[1] + of[2] == 3, glides = of[0] < 0 || of[1] < 0 || of[2] < 0;
+            of[0] = held_all ? 1 : glides ? -1 : 0;
             of[1] = of[2] = 0;
         }
         if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);

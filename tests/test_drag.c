@@ -1220,6 +1220,36 @@ GPROJT_TEST(misused) {
     gprojt_clear_stage(&stage);
 }
 
+/* A release that is at its limit says what goes on, and that does: Newton's method goes an eighth of the way to z^8 = 0
+   in a step. */
+GPROJT_TEST(releases_that_need_longer) {
+    static const double one[4] = {1, 1, 1, 1};
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLAIN, NULL);
+    gproj_system *s = gproj_form_system(stage.form);
+    int32_t v = gprojt_middle(stage.mesh), z = gproj_system_add_variables(s, 4, 1, one), k;
+    int32_t group = gprojt_add_group(s, "root", GPROJ_CONSTRAINT, 1);
+    gproj_term term[2];
+    gproj_drag *drag;
+    gproj_result result;
+    double dragged[75], residual;
+    for (k = 0; k < 3; ++k) {
+        term[0] = gprojt_term(z + k + 1, -1, 1), term[1] = gprojt_term(z + k, z + k, -1);
+        gproj_system_add_row(s, group, 2, term, 0, -1);
+    }
+    gprojt_add_linear(s, group, z + 3, 1e6, 0, -1);
+    drag = gprojt_grab(&stage, 1, &v);
+    gprojt_pull(&stage, drag, v, 0.1);
+    result = gproj_drag_end(drag);
+    residual = result.residual;
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+    GPROJT_CHECK(strstr(result.message, "; gproj_solve goes on from here") != NULL);
+    memcpy(dragged, stage.mesh->position, sizeof dragged);
+    result = gproj_solve(stage.form, 100, NULL);
+    GPROJT_CHECK(result.residual < 0.5 * residual && gprojt_far(dragged + 3 * v, stage.start + 3 * v) > 0.05);
+    for (k = 0; k < 75; ++k) GPROJT_NEAR(stage.mesh->position[k], dragged[k], 1e-9);
+    gprojt_clear_stage(&stage);
+}
+
 /* Numbers beyond all measure are no tangent space; a form that has met an error is not dragged on. */
 GPROJT_TEST(what_cannot_be_linearised) {
     gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
@@ -1500,6 +1530,7 @@ int main(void) {
     GPROJT_RUN(refreshes_that_fail_in_a_move);
     GPROJT_RUN(moves_that_are_undone);
     GPROJT_RUN(misused);
+    GPROJT_RUN(releases_that_need_longer);
     GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
     GPROJT_RUN(releases_in_frames);

@@ -1409,6 +1409,30 @@ GPROJT_TEST(planes_without_carriers_are_named) {
     }
 }
 
+/* Vertices that are let go of a gliding boundary need not be in its plane; without them no plane spreads. */
+GPROJT_TEST(planes_end_where_sides_are_let_go) {
+    static const int32_t sides[12] = {1, 2, 3, 5, 9, 10, 14, 15, 19, 21, 22, 23}; /* all but the corners */
+    static const double none[12] = {0};
+    int freed;
+    for (freed = 0; freed < 2; ++freed) {
+        gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads;
+        gproj_result result;
+        int32_t group;
+        memset(&loads, 0, sizeof loads);
+        loads.snow = 1;
+        gproj_add_planarity(form, 1);
+        gprojt_add_supported(form, mesh, &loads, false);
+        group = gproj_add_gliding_boundary(form, 1);
+        if (freed) GPROJT_CHECK(gproj_set_element_weights(form, group, 12, sides, none) == GPROJ_OK);
+        result = gproj_solve(form, 1, NULL);
+        GPROJT_CHECK((strstr(result.message, "cannot carry its load") != NULL) == !freed);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A ring whose boundaries glide, all the way round: if they are in one plane, the vertices between them are, too. Half of the
    ring is one face wide, and so gives a plane to begin with; the other half is two wide. */
 GPROJT_TEST(rings_that_glide_in_a_plane) {
@@ -3161,6 +3185,7 @@ int main(void) {
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
     GPROJT_RUN(conflicts_at_the_limit);
+    GPROJT_RUN(planes_end_where_sides_are_let_go);
     GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(rings_that_glide_in_a_plane);
     GPROJT_RUN(carriers_in_a_plane_are_not_named);
