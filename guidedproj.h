@@ -68,7 +68,8 @@
      bend             second-order correction of a step
      stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
      brake            a damping of single variables that acts only after steps have failed
-     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way
+     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way (in
+                      >>loop a safeguard is a group of corners)
      attempt          a run of a smooth solve, which may begin again in another way
      pass             (a value of a saved state) count, write, check or read it, see >>stream
      verdict          the outcome of a solve and a sentence about it
@@ -209,7 +210,7 @@
        >>offset         parallel meshes and what is between them
        >>fill           closed curves filled with quads
        >>form           a mesh and its system
-       >>catalogue      the constraints and wishes
+       >>catalogue      the constraints and wishes, and how to add one
        >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
        >>corners        faces must keep their corners
@@ -243,9 +244,9 @@
      satisfies, are refused by name.
 
    MEMORY   Each object takes memory from the allocator of the gproj_host it was made with, counts it, and gives it all
-     back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate
-     nothing, unless during a solve a group first gets a weight or safeguards first act (then the system is analysed
-     anew), or a callback sets coefficients of planarity, fairness or their like (whose rows share them before). Every
+     back when it is destroyed. There are no globals. Iterations after the first, and the moves of a drag, allocate only
+     if the system is analysed anew (a group gets its first weight, safeguards get rows, the metric of a smooth solve
+     comes to rest), or if a callback sets coefficients that rows share (of planarity, fairness or their like). Every
      allocation may fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a
      mesh, a curve, a stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and
      surfaces added to it, a drag to its form.
@@ -310,8 +311,8 @@ GPROJ_API int32_t gproj_version(void);
 /* Memory. A NULL `allocate` means malloc/realloc/free. All three get `user` and the sizes in bytes; memory must
    be aligned for any type. `reallocate` and `release` may be NULL when `allocate` is not: the library then
    copies, or never gives back (an arena). `limit` > 0: an object that would hold more than `limit` bytes fails
-   with GPROJ_ERROR_MEMORY instead. A form, its system, the factorisation in that, each copy of a curve in the form and
-   a drag are objects of their own here. */
+   with GPROJ_ERROR_MEMORY instead. A form, its system, the factorisation in that, each boundary along which
+   a form's vertices glide and a drag are objects of their own here. */
 typedef struct gproj_allocator {
     void *(*allocate)(void *user, size_t size);
     void *(*reallocate)(void *user, void *block, size_t old_size, size_t new_size);
@@ -509,7 +510,7 @@ typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
     const int32_t *row;   /* of each entry, in any order; entries at the same place are summed, in order */
-    const double *value;  /* of each entry; |value| <= 1e50; LIMIT if all squares or products with b underflow */
+    const double *value;  /* of each entry, |value| <= 1e50; refused if all squares, or products with b, underflow */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
@@ -607,15 +608,18 @@ typedef struct gproj_term {
 typedef struct gproj_progress {
     int32_t iteration;  /* the last one that began, from 1; 0: none has */
     int32_t iterations; /* the limit */
-    int32_t unguided;   /* iterations since the wishes have faded, or since half of the limit; 0: they still guide. From
-                           2 on a refresh should not switch between pieces (of a curve), or it may do so for ever */
-    bool tangential;    /* nearest: steps follow the constraints away from the start, and may be long */
-    bool trial;         /* x is the end of a step that may still be taken back: the rows are to fit it, but what a
+    /* 0 while wishes guide, and in a smooth solve while the residual is above 1e-3, but for half of the limit at most;
+       then the iterations since. From 2 on a refresh should not switch between pieces (of a curve), or it may do so for
+       ever. */
+    int32_t unguided;
+    bool tangential; /* nearest: steps follow the constraints away from the start, and may be long */
+    bool trial;      /* x is the end of a step that may still be taken back: the rows are to fit it, but what a
                            refresh keeps from call to call should depend on accepted steps only */
 } gproj_progress;
 
 /* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
-   and replaces the rows by gproj_system_set_row. Must not add anything to the system. */
+   and replaces the rows by gproj_system_set_row. Must not add anything to the system: that is refused, and from then on
+   the system has GPROJ_ERROR_STATE. */
 typedef void (*gproj_refresh)(void *user, gproj_system *system, int32_t group, const gproj_progress *progress);
 
 enum {
@@ -687,10 +691,10 @@ typedef struct gproj_iteration {
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
-    /* The constraints hold when every |phi| <= tolerance; 0 means 1e-13, or more if rounding asks for it: 8 roundings
-       of the largest |x| in rows that must hold; 16 of sum_t |a_t x_t| in a global row sum_t a_t x_t; 4 of sum_k
-       |dphi/dx_k x_k| if nothing else keeps a row from holding (large forces). The last gives at most 1e-11, the others
-       1e-8. */
+    /* The constraints hold when every |phi| <= tolerance. 0 means 1e-13, or more if rounding asks for it: 8 roundings
+       of the largest |x| (above 1e-11: of the largest in rows that must hold) or 16 of sum_t |a_t x_t| in a global row
+       sum_t a_t x_t, at most 1e-8; if rounding still keeps a row from holding (large forces), 4 of sum_k
+       |dphi/dx_k x_k|, at most 1e-11. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
                            steps fall short near the end) */
@@ -728,7 +732,7 @@ typedef struct gproj_spoiled {
 
 typedef struct gproj_result {
     gproj_outcome outcome;
-    int32_t iterations; /* gproj_iteration.number of the last one: steps taken and numbers skipped */
+    int32_t iterations; /* gproj_iteration.number of the last one in the attempt that counts, without later attempts */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
     int32_t attempts;   /* 1, and in a smooth gproj_solve 1 more for each restart */
     double residual;    /* largest |phi| over rows that must hold with weight > 0 */
@@ -1323,7 +1327,7 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
    rows each, linearised in each iteration: u'(v_i - p) = 0, w'(v_i - p) = 0 put v_i on the line through the closest
    segment (u, w orthogonal to it, p on it; paper 3.3). t'(v_i - p) = 0 (t along the segment) pins it, with a weight
    only while it would run beyond an end of the curve or is closest to a corner between segments. Vertices walk from
-   segment to segment; two iterations after the wishes have faded each keeps its segment. The curve must outlive the
+   segment to segment; late in a solve (gproj_progress.unguided >= 2) each keeps its segment. The curve must outlive the
    form. Returns the group, or -1 after an error. */
 GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, int32_t count, const int32_t *vertices,
                                     double weight);
@@ -1493,14 +1497,15 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 /* Begins from the mesh's positions as they are, takes at most `iterations` steps and writes the positions back: a
    second call goes on from the end of the first, or from the positions that you have set since. Positions are written
    back however the solve ends, but for an error (GPROJ_FAILED) and steps farther than vertices may be, which leave the
-   mesh as it was. At the beginning vertices, normals, axes and the unknowns of gproj_form_add_unknowns get their values
-   anew; variables of gproj_system_add_variables, and the forces of an earlier solve, keep theirs. "The original" for
+   mesh as it was (in frames: as the last good one left it). At the beginning all unknowns of the library and of
+   gproj_form_add_unknowns get start values for these positions; variables of gproj_system_add_variables, and the forces
+   of an earlier solve, keep theirs. "The original" for
    fixed vertices, gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish
    guides, closeness to the positions at the beginning of this solve is added, with the weight 0.03 * 0.3^n up to
    iteration 5, or half of the iterations if that is less (options: skip_closeness).
 
-   If only constraints act, such as planarity and equilibrium, and wishes for single vertices, such as closeness, steps
-   are found by the constraints' multipliers, provided that these are clearly fewer than the variables. With fairness,
+   Steps are found by the constraints' multipliers where these are clearly fewer than the variables: with constraints
+   such as planarity and equilibrium, and wishes for single vertices such as closeness. With fairness,
    circular or conical faces they are not, and options->nearest and drags always need the matrix of all variables; the
    first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
    constraints are met, on paths that differ a little.
@@ -1525,10 +1530,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
      limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
-   - If the constraints do not hold at the end, or the mesh is spoiled, the solve begins again: if they hold on a
-     spoiled mesh at first, guided by closeness to where it began with weights 0.3 * 0.7^n for 20 iterations, otherwise
-     (or with skip_closeness) with stiffer steps. At most three attempts share `iterations`, and the best end counts
-     (gproj_result.attempts). Not in frames (gproj_solve_begin).
+   - If the constraints do not hold at the end, or the mesh is spoiled, up to two more attempts follow, each if at least
+     8 of the `iterations` are left: the second, if the first holds on a spoiled mesh, guided by closeness to where the
+     solve began with weights 0.3 * 0.7^n for 20 iterations, others (or with skip_closeness) with stiffer steps. None
+     follows where a demand can never hold. The best end counts, the earlier one of equals, or one that is cancelled or
+     fails (gproj_result.attempts). Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -1704,12 +1710,11 @@ typedef struct gproj_handles {
 } gproj_handles;
 
 typedef struct gproj_drag_options {
-    /* > 0, in mean edge lengths: when a move leaves a larger residual (gproj_drag_residual), everything is linearised
-       anew at the mesh as it has become, after a step that takes most of the residual off, as far as no vertex moves by
-       more than a mean edge length for it. For long drags. Where following the handles all the way would leave a
-       residual above 1, or one that grows in spite of that step, they stay behind (gproj_drag_info), and follow in the
-       next moves, also to the same place; but a jump of which even 1/256 would leave more than 1 is made at once, from
-       the mesh before the drag. A move then costs an evaluation of all rows, and now and then as much as
+    /* > 0, in mean edge lengths, for long drags: a move that leaves a larger residual (gproj_drag_residual) takes a
+       step that lowers it, by at most a mean edge length a vertex, and linearises everything anew. Handles whose way
+       would leave a residual above 1, or one that grows in spite of that step, stay behind (gproj_drag_info) and follow
+       in the next moves, also to the same place. If even 1/256 of the way would leave more than 1, all of it is made at
+       once, from the mesh before the drag. A move then costs an evaluation of all rows, and now and then as much as
        gproj_drag_begin. 0 or INFINITY: never. */
     double residual_bound;
     bool keep_wishes; /* at the release the form's own wishes guide, too */
@@ -2741,6 +2746,16 @@ GPROJI_INTERNAL void *gproji_create_object(const gproj_host *host, size_t size, 
     else
         gproji_fail_memory(error);
     return object;
+}
+
+GPROJI_INTERNAL const char *gproji_place_word(gproj_place place) {
+    switch (place) {
+    case GPROJ_PLACE_VERTEX: return "vertex";
+    case GPROJ_PLACE_EDGE: return "edge";
+    case GPROJ_PLACE_FACE: return "face";
+    case GPROJ_PLACE_VARIABLE: return "variable";
+    default: return "element";
+    }
 }
 
 /* ============================================================================================================
@@ -6281,7 +6296,8 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     return true;
 }
 
-/* Sorts the entries by fronts, those that eliminate row or column first, and finds offsets in L. False: no memory. */
+/* Sorts the entries by the front that eliminates row or column, whichever comes first, and finds their offsets in L.
+   Overwrites x->mark, node_of and member. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_place_entries(gproj_cholesky *c, gproji_compression *x, const int64_t *start,
                                                    const int32_t *row) {
     const gproji_symbolic *sy = &c->symbolic;
@@ -7534,12 +7550,12 @@ typedef struct gproji_stream {
 GPROJI_INLINE bool gproji_comes_in(const gproji_stream *stream) { return stream->mode >= GPROJI_CHECK; }
 
 /* Notes an error, except while counting, which must go on to the end. */
-GPROJI_INTERNAL void gproji_spoil(gproji_stream *stream, const char *sentence) {
+GPROJI_INTERNAL void gproji_fail_stream(gproji_stream *stream, const char *sentence) {
     if (stream->mode != GPROJI_COUNT && !stream->wrong) stream->wrong = sentence;
 }
 
-GPROJI_INTERNAL void gproji_spoil_memory(gproji_stream *stream) {
-    gproji_spoil(stream, "out of memory");
+GPROJI_INTERNAL void gproji_fail_stream_memory(gproji_stream *stream) {
+    gproji_fail_stream(stream, "out of memory");
     stream->exhausted = true;
 }
 
@@ -7555,7 +7571,8 @@ GPROJI_INLINE uint64_t gproji_get_bytes(const uint8_t *in, int32_t bytes) {
 GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, int32_t bytes) {
     size_t at = stream->at;
     int32_t i;
-    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at) gproji_spoil(stream, "it ends too early");
+    if (stream->mode != GPROJI_COUNT && (size_t)bytes > stream->size - at)
+        gproji_fail_stream(stream, "it ends too early");
     if (stream->wrong) return 0;
     for (i = 0; stream->mode == GPROJI_WRITE && i < bytes; ++i) stream->out[at + (size_t)i] = (uint8_t)(value >> 8 * i);
     if (gproji_comes_in(stream)) value = gproji_get_bytes(stream->in + at, bytes);
@@ -7568,14 +7585,14 @@ GPROJI_INLINE uint64_t gproji_pass_bytes(gproji_stream *stream, uint64_t value, 
 GPROJI_INTERNAL int32_t gproji_pass_integer(gproji_stream *stream, int32_t *value, int32_t least, int32_t most) {
     int64_t passed = (int64_t)gproji_pass_bytes(stream, (uint32_t)*value, 4);
     if (passed > INT32_MAX) passed -= (int64_t)1 << 32;
-    if (passed < least || passed > most) gproji_spoil(stream, "a whole number is out of its range");
+    if (passed < least || passed > most) gproji_fail_stream(stream, "a whole number is out of its range");
     if (stream->mode == GPROJI_READ && !stream->wrong) *value = (int32_t)passed;
     return (int32_t)passed;
 }
 
 GPROJI_INTERNAL bool gproji_pass_bool(gproji_stream *stream, bool *value) {
     uint64_t passed = gproji_pass_bytes(stream, *value, 1);
-    if (passed > 1) gproji_spoil(stream, "a flag is neither on nor off");
+    if (passed > 1) gproji_fail_stream(stream, "a flag is neither on nor off");
     if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed == 1;
     return passed == 1;
 }
@@ -7587,7 +7604,7 @@ GPROJI_INTERNAL double gproji_pass_double(gproji_stream *stream, double *value, 
     memcpy(&bits, value, sizeof bits);
     bits = gproji_pass_bytes(stream, bits, 8);
     memcpy(&passed, &bits, sizeof passed);
-    if (!(passed >= least && passed <= most)) gproji_spoil(stream, "a number is none, or out of its range");
+    if (!(passed >= least && passed <= most)) gproji_fail_stream(stream, "a number is none, or out of its range");
     if (stream->mode == GPROJI_READ && !stream->wrong) *value = passed;
     return passed;
 }
@@ -7611,7 +7628,7 @@ GPROJI_INTERNAL void gproji_pass_number(gproji_stream *stream, double *value, do
     if (small == GPROJI_SMALL_NONE) {
         gproji_pass_double(stream, value, least, most);
     } else if (!(passed >= least && passed <= most)) {
-        gproji_spoil(stream, "a number is out of its range");
+        gproji_fail_stream(stream, "a number is out of its range");
     } else if (stream->mode == GPROJI_READ) {
         *value = passed;
     }
@@ -7735,11 +7752,11 @@ typedef enum gproji_role {
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
 
-/* How far safeguards give way to what must hold. */
+/* How far safeguards give way to what must hold: what their rows ask for. After the last stage they have no weight. */
 typedef enum gproji_yielding {
-    GPROJI_YIELD_SLOWLY, /* they ask for what there is */
-    GPROJI_YIELD_FLOOR,  /* the solve creeps: they ask for their floors */
-    GPROJI_YIELD_LAST    /* they ask for the least with which a mesh is sound */
+    GPROJI_YIELD_SLOWLY, /* the present size, between the floor and the wanted one */
+    GPROJI_YIELD_FLOOR,  /* the floor: the solve creeps */
+    GPROJI_YIELD_LAST    /* the least with which a mesh is sound */
 } gproji_yielding;
 
 /* The variables in rows, row after row, each once in a row. */
@@ -7778,9 +7795,9 @@ typedef struct gproji_group {
     gproj_refresh refresh;
     void *refresh_user;
     double weight;    /* in the present iteration */
-    bool idle;        /* without weight at each compilation so far */
-    int32_t zero_sum; /* rows that come first, so many: gradients with the same local unknowns add up to nothing
-                        at the other nodes, as n'(v_i - v_j) does around a face */
+    bool idle;        /* has no multipliers in >>schur: no weight yet, or a metric at rest */
+    int32_t zero_sum; /* the first rows, this number of them: gradients with the same local unknowns add up to nothing
+                         at the other nodes, as n'(v_i - v_j) does around a face */
     bool has_wide;    /* some rows are dense */
     gproji_role role;
     gproji_guarding guard;
@@ -7953,7 +7970,7 @@ GPROJI_INLINE const gproji_group *gproji_group_at(const gproj_system *s, int32_t
 
 /* Forbids or allows that anything is added, as during a solve; returns what was before. Rows that are seen without one
    see no progress. */
-GPROJI_INTERNAL bool gproji_hold(gproj_system *s, bool solving) {
+GPROJI_INTERNAL bool gproji_lock(gproj_system *s, bool solving) {
     bool before = s->solving;
     if (solving && !before) memset(&s->progress, 0, sizeof s->progress);
     s->solving = solving;
@@ -8295,7 +8312,7 @@ GPROJI_INTERNAL int32_t gproji_count_named(gproj_system *s, int32_t count, const
     return named;
 }
 
-/* Has the group room for so many further rows, terms and locals? */
+/* Has the group room for these numbers of further rows, terms and locals? */
 GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t terms, size_t locals) {
     size_t wanted = (size_t)g->row_count + rows + 1;
     return g->term && wanted - 1 <= GPROJI_ROWS_MAX && wanted <= g->capacity.row &&
@@ -8557,9 +8574,18 @@ GPROJI_INTERNAL bool gproji_share_weights(gproj_system *s, gproji_group *g) {
 }
 
 /* Sets the weight and constant of a row of the library's own, whose elements have no factors. */
-GPROJI_INLINE void gproji_place_row(gproj_system *s, int32_t group, int32_t row, double weight, double constant) {
+GPROJI_INLINE void gproji_set_row(gproj_system *s, int32_t group, int32_t row, double weight, double constant) {
     s->group[group].row[row].weight = weight;
     s->group[group].row[row].constant = constant;
+}
+
+/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
+   the variables. */
+GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
+    gproji_group *g = &s->group[group];
+    GPROJ_ASSERT(!g->common && !g->row[row].run);
+    *count = (int32_t)g->row[row].terms;
+    return g->term + g->row[row].term;
 }
 
 /* Gives rows the factors of their elements, `count` of them; a negative one: as it is. False: out of memory. */
@@ -10491,7 +10517,7 @@ enum {
     GPROJI_PATIENCE_STIFF = 12,     /* and with a metric */
     GPROJI_ACTIVATIONS = 4,         /* from then on no row of the guard is dormant */
     GPROJI_VIOLATIONS = 3,          /* how often a step is found again with new rows of safeguards */
-    GPROJI_SAFE_MOST = 50,          /* with a higher limit safeguards act in half of the iterations, at most so many */
+    GPROJI_SAFE_MOST = 50,          /* with a higher limit safeguards act in half of the iterations, at most in these */
     GPROJI_SAFE_LAST = 30,          /* iterations after that in which they ask for the least */
     GPROJI_CREEP_ITERATIONS = 6,    /* between two looks at how far the residual has fallen */
     GPROJI_BALANCE_ITERATIONS = 20, /* without wishes; earlier, constraints may be in balance in passing */
@@ -10513,8 +10539,9 @@ typedef struct gproji_standing {
 /* Callbacks by which the owner of a system takes part in steps; any may be NULL. */
 typedef struct gproji_hooks {
     void (*settle)(void *user, double *x); /* gives local unknowns (normals) their best values at x */
-    bool (*inspect)(void *user, const double *before, const double *x); /* is a safeguard without a row violated? */
-    bool (*wake)(void *user); /* gives those rows, at the x before; are there new ones? */
+    /* Marks safeguards without a row that x violates; are there any? */
+    bool (*inspect)(void *user, const double *before, const double *x);
+    bool (*wake)(void *user); /* gives these rows, at the x before; are there new ones? */
     bool (*mend)(void *user); /* nearest: gives safeguards rows if the mesh is spoiled; are there new ones? */
     bool (*refuse)(void *user, const double *before, const double *x); /* is a step no good? */
     void *user;
@@ -10571,26 +10598,8 @@ typedef struct gproji_loop {
     gproji_trust trust;
     double shift; /* nearest: of the last slide with curvature, times s^2 */
     bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    bool hopeful; /* the verdict: more iterations may help, unless a reason against it is found */
 } gproji_loop;
-
-/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
-   the variables. */
-GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
-    gproji_group *g = &s->group[group];
-    GPROJ_ASSERT(!g->common && !g->row[row].run);
-    *count = (int32_t)g->row[row].terms;
-    return g->term + g->row[row].term;
-}
-
-GPROJI_INTERNAL const char *gproji_place_word(gproj_place place) {
-    switch (place) {
-    case GPROJ_PLACE_VERTEX: return "vertex";
-    case GPROJ_PLACE_EDGE: return "edge";
-    case GPROJ_PLACE_FACE: return "face";
-    case GPROJ_PLACE_VARIABLE: return "variable";
-    default: return "element";
-    }
-}
 
 GPROJI_INTERNAL const char *gproji_outcome_string(gproj_outcome outcome) {
     switch (outcome) { /* no default: compilers tell when an outcome is missing */
@@ -10860,7 +10869,7 @@ GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     gproji_lap(loop, GPROJ_PHASE_REFRESH);
 }
 
-/* Rows, gradients and standing at the current x. */
+/* Refreshes all groups, the callers' too, and sees their rows at the current x. */
 GPROJI_INTERNAL void gproji_linearise(gproji_loop *loop) {
     gproji_refresh_groups(loop->system);
     gproji_see_rows(loop);
@@ -11162,9 +11171,8 @@ GPROJI_INTERNAL bool gproji_switch_bounds(const gproji_loop *loop, int32_t round
     return !(gproji_merit_at(&merit, 1) <= gproji_bound_enough * gproji_merit_at(&merit, 0));
 }
 
-/* When a row of the guard acts that waits for a multiplier, it waits no more, and neither do those that are near to it,
-   at x or where the step began; each time these are more, so that steps are not analysed again and again. Returns
-   whether there was one. */
+/* Gives multipliers to dormant rows of the guard that act, and to those near to acting at x or where the step began.
+   Each call that finds one has a wider margin, so that analyses are rare. Returns whether there were any. */
 GPROJI_INTERNAL bool gproji_wake_guard(gproj_system *s) {
     bool woken = false;
     int32_t i, r;
@@ -11205,7 +11213,7 @@ GPROJI_INTERNAL bool gproji_start_multipliers(gproj_system *s) {
 /* Compiles again during a solve: `anew`, or if steps are found by multipliers and a group gets its first weight. x is
    the beginning of the step, and s->vector.saved afterwards too. Returns whether rows were compiled; there may be an
    error. */
-GPROJI_INTERNAL bool gproji_place_woken(gproji_loop *loop, bool anew) {
+GPROJI_INTERNAL bool gproji_recompile(gproji_loop *loop, bool anew) {
     gproj_system *s = loop->system;
     if (!anew && !(s->schur.on && (gproji_wake_groups(s) || s->schur.stale))) return false;
     gproji_system_forget(s);
@@ -11247,7 +11255,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
         guard = gproji_wake_guard(s);
         gproji_step_back(s);
         violations += violated;
-        if (gproji_place_woken(loop, guard || (violated && loop->hooks.wake(loop->hooks.user)))) {
+        if (gproji_recompile(loop, guard || (violated && loop->hooks.wake(loop->hooks.user)))) {
             round = 0;
             circles = false;
         }
@@ -11268,7 +11276,7 @@ GPROJI_INTERNAL void gproji_stiffen(gproji_loop *loop, double stiffness) {
         back = back || (g->weight == 0 && weight > 0);
         g->weight = weight;
     }
-    if (back && !gproji_place_woken(loop, false) && s->compiled) gproji_linearise(loop); /* not without memory */
+    if (back && !gproji_recompile(loop, false) && s->compiled) gproji_linearise(loop); /* not without memory */
 }
 
 /* From now on metric groups measure steps alone. */
@@ -11302,7 +11310,7 @@ GPROJI_INTERNAL void gproji_adapt_stiffness(gproji_loop *loop) {
     else if (s->stiffness > 0) { /* the metric rests: then steps are found by multipliers, if that pays */
         gproji_stiffen(loop, 0);
         for (i = 0; i < s->group_count; ++i) s->group[i].idle = s->group[i].idle || s->group[i].role >= GPROJI_METRIC;
-        if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_place_woken(loop, true);
+        if (!s->schur.on && !gproji_schur_is_outnumbered(s, gproji_schur_limit(s))) gproji_recompile(loop, true);
     }
 }
 
@@ -11404,8 +11412,8 @@ GPROJI_INTERNAL void gproji_see_changes(gproji_loop *loop) {
     loop->best.residual = loop->best.merit = HUGE_VAL;
 }
 
-/* Iteration n has found no step: leaves out those that follow with the same weights, but for a decay of constraints, in
-   which nothing would be different. False: these are all that remain. */
+/* Iteration n has found no step: skips those with the same weights, in which nothing would be different (a decay of
+   constraints does not count). False: no others remain. */
 GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     const gproj_system *s = loop->system;
     int32_t end = INT32_MAX, i;
@@ -11424,8 +11432,9 @@ GPROJI_INTERNAL bool gproji_leave_out(gproji_loop *loop, int32_t n) {
     return true;
 }
 
-/* Lets safeguards ask for the least, when no step is found with them or their time is over, and next time lets them all
-   go: constraints come first. False: there is none. */
+/* When no step is found with safeguards, or their time is over: lets them ask for the least, the next time takes their
+   weights for the rest of the solve, because constraints come first. Then steps are soft again, no earlier x counts as
+   the best, and with a high limit that least has GPROJI_SAFE_LAST iterations. False: no safeguards act. */
 GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool last = s->yield == GPROJI_YIELD_LAST, some = false;
@@ -11478,7 +11487,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         n = loop->result.iterations + 1;
         memset(loop->iteration.seconds, 0, sizeof loop->iteration.seconds);
         s->progress.iteration = n, s->progress.iterations = loop->iterations;
-        gproji_place_woken(loop, gproji_wake_guard(s));
+        gproji_recompile(loop, gproji_wake_guard(s));
         if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
         if (gproji_set_weights(loop, n)) gproji_linearise(loop);
         guided = gproji_wishes_are_on(s) || (loop->stiff && loop->standing.residual > gproji_calm);
@@ -11534,10 +11543,11 @@ GPROJI_INTERNAL bool gproji_constraints_balance(gproj_system *s) {
 
 static const double gproji_almost = 1e-9;         /* residual that rounding of the input explains */
 static const double gproji_conflict_least = 1e-3; /* residual that is no slow end */
+
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
-/* Writes why the rows of the worst group, g, do not hold, and advice. */
-GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
+/* Writes why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
+GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
     gproj_system *s = loop->system;
     bool stalled = loop->result.outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_usual;
@@ -11545,6 +11555,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
     int32_t second = -1, wish = -1, i, k;
     bool guided, tired, balanced;
     more[0] = 0;
+    loop->hopeful = false;
     if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *other = &s->group[i];
@@ -11575,7 +11586,7 @@ GPROJI_INTERNAL void gproji_advise(const gproji_loop *loop, const gproji_group *
                       "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
                       s->group[wish].name);
     else if (!stalled && !balanced)
-        gproji_format(more, size, "%s", gproji_more_iterations);
+        loop->hopeful = true;
     else if (loop->options.tolerance <= 0 && loop->standing.residual <= gproji_almost)
         gproji_format(more, size, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
                       pow(10.0, ceil(log10(loop->standing.residual))));
@@ -11695,17 +11706,18 @@ enum {
     GPROJI_NEAREST_RETRACT = 3  /* steps back to the constraints */
 };
 
-/* The weights of slides: wishes keep theirs, whatever their schedules say, scaled so that the largest is `scale`. */
-GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale) {
+/* The weights of a slide (`tangential`), or of a projection between slides, without the guard: wishes keep theirs,
+   whatever their schedules say, scaled so that the largest is `scale`. */
+GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, bool tangential) {
     double largest = 0;
     int32_t i;
-    s->progress.tangential = scale == gproji_nearest_scale;
+    s->progress.tangential = tangential;
     for (i = 0; i < s->group_count; ++i)
         if (s->group[i].kind == GPROJ_WISH) largest = gproji_fmax(largest, s->group[i].schedule.weight);
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
-        if (g->role == GPROJI_GUARD && !s->progress.tangential) g->weight = 0;
+        if (g->role == GPROJI_GUARD && !tangential) g->weight = 0;
         if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
     }
 }
@@ -11715,7 +11727,7 @@ GPROJI_INTERNAL bool gproji_is_multiplied(const gproji_group *g, const gproji_ro
     return g->kind != GPROJ_WISH && g->weight > 0 && row->weight > 0;
 }
 
-/* Solves for dx and the rise of the multipliers, in at most so many rounds, from rows linearised at x. False when the
+/* Solves for dx and the rise of the multipliers, in at most `rounds` rounds, from rows linearised at x. False when the
    matrix is not positive definite; rows are to be evaluated again after that. */
 GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double shift, int32_t rounds) {
     gproj_system *s = loop->system;
@@ -11768,8 +11780,8 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
     return true;
 }
 
-/* Lets bounds act that the model's step would violate, and lets those go whose multipliers would hold the step back
-   (y > 0). True: the step must be found again. */
+/* Lets bounds act that the model's step would violate, but no rows of the guard, and lets those go whose multipliers
+   would hold the step back (y > 0). Returns whether there were any: then the step should be found again. */
 GPROJI_INTERNAL bool gproji_switch_multiplied_bounds(gproj_system *s) {
     bool changed = false;
     int32_t i, r;
@@ -11831,7 +11843,8 @@ typedef struct gproji_slide_merit {
     double violated; /* and over the others */
 } gproji_slide_merit;
 
-/* `slope`: rows were linearised at x. A bound's row adds -w^2 y^2 to the Lagrangian if phi > -y. */
+/* The augmented Lagrangian at x with the risen multipliers and, with `slope`, its derivative along vector.step (then
+   rows are linearised at x). A bound's row adds -w^2 y^2 if phi > -y. */
 GPROJI_INTERNAL gproji_slide_merit gproji_lagrangian(const gproj_system *s, const double *x, bool slope) {
     gproji_slide_merit at = {0, 0, 0, 0};
     int32_t i, r;
@@ -11874,7 +11887,8 @@ GPROJI_INTERNAL double gproji_evaluate_constraints(gproj_system *s) {
     return sum;
 }
 
-/* Leads x back to the constraints with the factor and the gradients of the slide, as long as that works. */
+/* Leads x towards the constraints by steps with the factor and the gradients of the slide, as long as each halves what
+   they lack. Overwrites phi in rows; vector.step is the slide again, from vector.sum. */
 GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
     double before = HUGE_VAL, now = gproji_evaluate_constraints(s);
     int32_t k, v;
@@ -12001,7 +12015,7 @@ GPROJI_INTERNAL void gproji_judge_nearest(gproji_loop *loop) {
 
 /* Rows, standing and optimality at x with the weights of slides. */
 GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
-    gproji_set_nearest_weights(loop->system, gproji_nearest_scale);
+    gproji_set_nearest_weights(loop->system, gproji_nearest_scale, true);
     gproji_linearise(loop);
     gproji_judge_nearest(loop);
 }
@@ -12038,7 +12052,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
         moved = n > GPROJI_NEAREST_GUIDED && n <= last && gproji_slide(loop);
         if (!moved && (n <= GPROJI_NEAREST_GUIDED || !gproji_holds(loop))) {
-            gproji_set_nearest_weights(s, n <= GPROJI_NEAREST_GUIDED ? 0.999 * gproji_nearest_scale : 0);
+            gproji_set_nearest_weights(s, n <= GPROJI_NEAREST_GUIDED ? gproji_nearest_scale : 0, false);
             for (i = 0; i < s->group_count; ++i)
                 if (s->group[i].role == GPROJI_GUARD && n <= GPROJI_NEAREST_GUIDED)
                     s->group[i].weight = gproji_weight_in(loop, &s->group[i], n);
@@ -12062,7 +12076,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         /* 3. Safeguards, if the mesh is spoiled at a minimum or in the second half. */
         if (n < last && (n >= half || gproji_is_nearest(loop)) && loop->hooks.mend &&
             loop->hooks.mend(loop->hooks.user)) {
-            gproji_place_woken(loop, true);
+            gproji_recompile(loop, true);
             if (s->error.code != GPROJ_OK) return GPROJ_FAILED;
             gproji_see_nearest(loop);
             loop->waited = 0;
@@ -12201,9 +12215,14 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     gproji_loop loop;
     if (!gproji_begin_loop(&loop, s, 1, false, iterations, options)) return loop.result;
     gproji_run(&loop, -1);
+    if (loop.hopeful)
+        gproji_append(loop.result.message, GPROJ_MESSAGE_SIZE, strlen(loop.result.message), gproji_more_iterations,
+                      sizeof gproji_more_iterations - 1);
     s->changed = true; /* for the solve of a form that goes on after this one, which may have taken its multipliers */
     return loop.result;
 }
+
+/* -- gradients, checked by differences -- */
 
 /* The v-th of the variables that a row names, two a term; -1 for the second one of a linear term. */
 GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
@@ -12287,7 +12306,7 @@ GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_system *s, gp
             if (memcmp(&now, a, sizeof now) == 0) continue;
             /* Terms that rows share stay shared until a different coefficient comes in. */
             if (g->common && !gproji_own_terms(s, g)) {
-                gproji_spoil_memory(stream);
+                gproji_fail_stream_memory(stream);
                 return;
             }
             gproji_set_coefficient(g, &g->row[r], t, now);
@@ -12300,7 +12319,7 @@ GPROJI_INTERNAL void gproji_pass_rows(gproji_stream *stream, gproj_system *s, gp
         return;
     }
     if (gproji_comes_in(stream) && !gproji_share_weights(s, g)) {
-        gproji_spoil_memory(stream);
+        gproji_fail_stream_memory(stream);
         return;
     }
     for (r = 0; r < g->row_count && !stream->wrong; ++r) {
@@ -12421,7 +12440,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     /* Multipliers that are about to come in need their room. */
     if (passing == GPROJI_PASS_NEAREST && !ready && gproji_comes_in(stream) && !stream->wrong &&
         !(gproji_compile(s, true) == GPROJ_OK && gproji_start_multipliers(s)))
-        gproji_spoil_memory(stream);
+        gproji_fail_stream_memory(stream);
     if (stream->mode != GPROJI_READ) return passing;
     loop->system = s;
     loop->restored = loop->begun;
@@ -13757,6 +13776,7 @@ GPROJI_INTERNAL void gproji_obj_check_indices(gproji_reader *reader, const gproj
     }
 }
 
+/* Reads vertices and faces of an OBJ text; errors end the reading, in reader->code. */
 GPROJI_INTERNAL void gproji_read_obj(gproji_reader *reader) {
     bool more = true;
     /* Lines that begin with v, f or l; all others are passed over. */
@@ -13818,6 +13838,7 @@ GPROJI_INTERNAL bool gproji_off_word(gproji_reader *reader, int64_t count, int64
     return !reader->code;
 }
 
+/* Reads vertices and faces of an OFF text, all that it announces; errors end the reading, in reader->code. */
 GPROJI_INTERNAL void gproji_read_off(gproji_reader *reader) {
     char quote[GPROJI_QUOTE_SIZE];
     int64_t count[2] = {0, 0}, i, j, degree, index, vertices;
@@ -14098,6 +14119,7 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 enum {
     GPROJI_PATH_QUOTE_SIZE = 132
 };
+/* A path for a sentence: the end of a long one, without control characters. Returns quote. */
 GPROJI_INTERNAL const char *gproji_quote_path(const char *path, char quote[GPROJI_PATH_QUOTE_SIZE]) {
     size_t length = strlen(path), start = 0, at = 0;
     if (length > GPROJI_PATH_QUOTE_SIZE - 4) {
@@ -14606,6 +14628,7 @@ GPROJI_INTERNAL double gproji_crease_sharpness(const gproj_subdivide_options *op
     return gproji_is_finite(x) ? gproji_fmin(x, GPROJI_SHARP) : -1;
 }
 
+/* Refuses options, positions and meshes that cannot be subdivided so, before anything is made. */
 GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                                     gproj_error *error) {
     bool loop = options->scheme == GPROJ_LOOP;
@@ -15630,7 +15653,7 @@ GPROJI_INLINE void gproji_edit_insert(gproji_edit_store *s, int32_t before, int3
     s->next[h] = after, s->prev[after] = h;
 }
 
-/* Does half-edge h have a face with so many corners? */
+/* Does half-edge h have a face with this number of corners? */
 GPROJI_INLINE bool gproji_edit_sees(const gproji_edit_store *s, int32_t h, int32_t degree) {
     return s->face[h] >= 0 && s->face_degree[s->face[h]] == degree;
 }
@@ -15845,6 +15868,7 @@ GPROJI_INTERNAL int32_t gproji_edit_collapse(gproji_edit_object *object, int32_t
     return kept;
 }
 
+/* May the edge of h be collapsed so that the mesh stays one? Else the error says why not. */
 GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int32_t h, gproj_error *error) {
     gproji_edit_store *s = &object->now;
     int32_t g = h ^ 1, a = s->origin[h], b = s->origin[g], left, right, i;
@@ -16340,6 +16364,8 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
+/* Makes the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
+   vertex_face: the face of each vertex, or NULL. */
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
@@ -16586,6 +16612,7 @@ GPROJI_INTERNAL gproji_normals gproji_make_normals(const gproj_mesh *mesh, const
     return normals;
 }
 
+/* The unit normal of a face; for large faces from the few that were asked for last. */
 GPROJI_INTERNAL void gproji_recall_normal(gproji_normals *normals, int32_t face, double out[3]) {
     int32_t i;
     if (normals->mesh->face_degree[face] <= GPROJI_LARGE_FACE) {
@@ -16876,6 +16903,7 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
     return mesh ? gproji_volume(mesh, mesh->position, 0, NULL, NULL) : 0;
 }
 
+/* Measures what faces are like: areas, planarity (in mean edges, for each face too unless NULL), damage. */
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
     double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area;
     int32_t f;
@@ -17078,6 +17106,7 @@ GPROJI_INTERNAL gproj_place gproji_damage_place(int32_t kind) {
     return edge ? GPROJ_PLACE_EDGE : GPROJ_PLACE_FACE;
 }
 
+/* Sums up damage; the place is that of the first kind. */
 GPROJI_INTERNAL gproj_spoiled gproji_spoiled_of(const gproji_damages *d) {
     gproj_spoiled spoiled;
     int32_t kind;
@@ -17180,6 +17209,8 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
     gproji_normalise3(m, gproji_up);
 }
 
+/* Finds the offset directions x of a mesh that is parallel at constant vertex distance: unit vectors, those of
+   neighbours mirrored in the plane orthogonal to their edge at its middle. False: no memory. */
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_make_normals(mesh, mesh->position);
     gproji_mirrors work;
@@ -17283,6 +17314,8 @@ GPROJI_INTERNAL void gproji_apply_parallels(const gproji_parallels *p, const dou
     }
 }
 
+/* Finds the offset directions x of a mesh that is parallel at constant face distance, x'n = 1 for all faces at a
+   vertex, and has parallel edges: least squares by conjugate gradients. False: no memory. */
 GPROJI_INTERNAL bool gproji_face_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_make_normals(mesh, mesh->position);
     size_t count = 3 * (size_t)mesh->vertex_count, k;
@@ -18507,6 +18540,7 @@ typedef struct gproji_pairs {
     double *value;
 } gproji_pairs;
 
+/* Takes the arrays for `count` pairs of unknowns. False: no memory; gproji_pairs_give is due either way. */
 GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
     memset(m, 0, sizeof *m);
     gproji_pool_start(&m->pool, f->heap);
@@ -18939,7 +18973,8 @@ typedef enum gproji_own {
 /* What a constraint or wish does besides having rows; NULL: nothing. */
 typedef struct gproji_acts {
     gproj_refresh refresh; /* linearises the rows at x before each iteration; user: the part */
-    /* Gives unknowns their start values, the vertices being at x: when a solve or a drag begins. NULL: settles them. */
+    /* Gives unknowns their start values, the vertices being at x, and forgets what a refresh remembers from call to
+       call: when a solve or a drag begins. NULL: settles the unknowns. */
     void (*start)(gproji_part *part);
     /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of
        smooth solves with planar faces. */
@@ -20401,10 +20436,10 @@ GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
     return gproji_add_boundary_sets(form, &gproji_straight_boundary_rule, 2, weight);
 }
 
+/* -- directions of edges, lifting -- */
+
 static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
                                                          GPROJI_OWN_NONE,    GPROJI_ORDINARY,  NULL};
-
-/* -- directions of edges, lifting -- */
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
@@ -21029,9 +21064,9 @@ GPROJI_INTERNAL void gproji_start_block(gproj_form *form, int32_t block) {
     double *x = gproj_system_values(form->system), offset, factor;
     int32_t i;
     if (u.start) {
-        bool solving = gproji_hold(form->system, true);
+        bool solving = gproji_lock(form->system, true);
         u.start(u.user, form->mesh, u.first, u.count, u.value);
-        gproji_hold(form->system, solving);
+        gproji_lock(form->system, solving);
     }
     for (i = 0; i < u.count && gproji_form_ready(form); ++i) {
         double start = u.value[i];
@@ -21838,6 +21873,7 @@ typedef struct gproji_balance {
     gproj_error *error; /* of the form, or of a question */
 } gproji_balance;
 
+/* Takes the arrays for the equations of equilibrium in the forces. False: no memory, and none is kept. */
 GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, gproji_balance *p) {
     int64_t edges = form->mesh->edge_count, vertices = form->mesh->vertex_count;
     memset(p, 0, sizeof *p);
@@ -22353,7 +22389,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     for (i = 0; i < part->count; ++i) {
         double n[3], area = gproji_length3(gproji_guarded_areas(part) + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
-        gproji_place_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
+        gproji_set_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
         if (!(area > gproji_guard_area)) continue;
         gproji_guard_normal(part, gproj_system_values(system), i, n);
         /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard */
@@ -22460,13 +22496,13 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    All faces can be whole and yet lie on each other, so planar faces with the normals m and n at an edge keep
        m'n >= c                                                                                                      (3)
    by two rows, each with one of the normals as it is: a row with both would join the elements of >>schur.
-   Corners, edges and bends are let go if they have no size at the beginning, or 90 degrees and more.
+   Corners and edges without a size at the beginning, and bends of 90 degrees and more, get no rows.
 
-   A row asks for the size that its corner, edge or bend has when it is linearised, up to the part above, and for no
-   less than a floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the
-   constraints creep all the same, every row asks for its floor only; far from the end that would be too early, for
-   shapes lose more there than they must. If no step is found even so, the rows ask for the least, faces that are not
-   turned over nor so concave that their sides cross, before they are let go. Of the 36 twisted patches in test_smooth
+   A row asks for the size that its corner, edge or bend has when it is linearised, at most the part above, at least a
+   floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
+   creep all the same, each row asks for its floor only; far from the end that would be too early, for shapes lose more
+   there than they must. If no step is found even so, the rows ask for the least (no face turned over, nor so concave
+   that its sides cross), and then they are let go. Of the 36 twisted patches in test_smooth
    35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_dihedral_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
@@ -22600,7 +22636,7 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     for (r = 0; r < g->row_count; ++r) {
         gproj_term *term = gproji_row_terms(system, group, r, &count);
         if (!(g->row[r].weight > 0)) continue;
-        gproji_place_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, corners->item[r], term));
+        gproji_set_row(system, group, r, g->row[r].weight, -gproji_linearise_corner(part, x, corners->item[r], term));
     }
 }
 
@@ -22629,7 +22665,7 @@ GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
     row = gproji_add_row(part->form->system, part->group, count, term, 0, face);
     if (row < 0) return -1;
-    gproji_place_row(part->form->system, part->group, row, 0, 0);
+    gproji_set_row(part->form->system, part->group, row, 0, 0);
     corners->item[row] = item;
     corners->row[item] = row;
     return row;
@@ -22710,7 +22746,7 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
         row = corners->row[item] < 0 ? gproji_add_corner(part, item) : corners->row[item];
         if (row < 0) continue; /* without memory */
         edge = item < corners->bends ? item - corners->edges : (item - corners->bends) / 2;
-        gproji_place_row(system, part->group, row, edge < 0 ? sqrt(corners->size[item / 2]) : corners->length[edge], 0);
+        gproji_set_row(system, part->group, row, edge < 0 ? sqrt(corners->size[item / 2]) : corners->length[edge], 0);
         woken = true;
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
@@ -22829,7 +22865,7 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
     gproj_system_set_schedule(form->system, part->group, gproj_keep(wanted ? gproji_corner_weight : 0));
     corners->rounds = 0;
     g = gproji_group_at(form->system, part->group);
-    for (r = 0; r < g->row_count; ++r) gproji_place_row(form->system, part->group, r, 0, g->row[r].constant);
+    for (r = 0; r < g->row_count; ++r) gproji_set_row(form->system, part->group, r, 0, g->row[r].constant);
     x = gproj_system_values(form->system);
     /* The sizes that corners and edges have now. */
     for (f = 0; wanted && f < mesh->face_count; ++f) {
@@ -22854,8 +22890,9 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
    The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
    equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
    (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes: of flat faces; gproji_tell_angles: of
-   circular ones), and which damage was done on the way (gproji_tell_spoiled). Each function below appends a clause to
-   the sentence, or nothing. They run when a solve has ended, so the system's step and saved x are free for work. */
+   circular ones), and which damage was done on the way (gproji_tell_spoiled). Each gproji_tell_ appends a clause to the
+   sentence, or nothing; gproji_doubt_equilibrium replaces sentence and outcome. They run when a solve has ended, so the
+   system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -22997,12 +23034,13 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
    vertex to the next. */
 typedef struct gproji_spread {
     const gproj_form *form;
-    double *held;        /* 3 for each k: 1 if vertex k is held, -1 if it glides, else 0; the last plane that it was
-                            looked at for, negative if it is not in that one; the k-th vertex of the queue */
+    const int32_t *kept; /* per vertex: 1 if it is held, -1 if it glides, else 0 */
+    int32_t *looked;     /* per vertex: the last plane that it was looked at for, negative if it is not in that one */
+    int32_t *queue;      /* vertices in the plane that are not held */
     const double *value; /* 3 per vertex: the place of a held one */
     double point[3], normal[3];
     int32_t plane;  /* number of this one, from 1 */
-    int32_t count;  /* vertices in the queue: in the plane and not held */
+    int32_t count;  /* in the queue */
     int32_t vertex; /* held, and the farthest off the plane of those that it meets; -1: none is, */
     double off;     /* and how far */
 } gproji_spread;
@@ -23012,7 +23050,7 @@ enum {
     GPROJI_PLANES_MOST = 256 /* that are looked at */
 };
 
-GPROJI_INTERNAL bool gproji_stays(const gproji_spread *s, int32_t v) { return s->held[3 * (size_t)v] > 0; }
+GPROJI_INTERNAL bool gproji_stays(const gproji_spread *s, int32_t v) { return s->kept[v] > 0; }
 
 /* The place of a vertex: that at which it is held, or the one at the beginning. */
 GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v) {
@@ -23030,13 +23068,11 @@ GPROJI_INTERNAL double gproji_off_plane(const gproji_spread *s, int32_t v) {
    gproji_spread_to has taken them in? Remembers the answer, that of a side for all vertices that glide along it. */
 GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
     const gproj_mesh *mesh = s->form->mesh;
-    double *looked = &s->held[3 * (size_t)v + 1];
     int32_t first, last, e;
     bool in = true;
-    if (fabs(*looked) == s->plane) return *looked > 0;
-    *looked = -s->plane;
-    if (gproji_stays(s, v)) *looked = gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
-    if (!(s->held[3 * (size_t)v] < 0)) return *looked > 0;
+    if (s->looked[v] == s->plane || s->looked[v] == -s->plane) return s->looked[v] > 0;
+    s->looked[v] = gproji_stays(s, v) && gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
+    if (s->kept[v] >= 0) return s->looked[v] > 0;
     /* From one held vertex to the next; around the whole boundary if there is none. */
     first = mesh->prev[mesh->vertex_halfedge[v]], last = mesh->vertex_halfedge[v];
     while (first != mesh->vertex_halfedge[v] && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
@@ -23046,11 +23082,10 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
         if (e == last) break;
     }
     for (e = last;; e = mesh->prev[e]) {
-        double *at = &s->held[3 * (size_t)mesh->origin[e]];
-        if (at[0] < 0) at[1] = in ? s->plane : -s->plane;
+        if (s->kept[mesh->origin[e]] < 0) s->looked[mesh->origin[e]] = in ? s->plane : -s->plane;
         if (e == first) break;
     }
-    return *looked > 0;
+    return in;
 }
 
 /* Takes the other vertices of a face with three corners in the plane into it. */
@@ -23070,8 +23105,8 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
         double off;
         if (gproji_is_in_plane(s, v)) continue;
         if (!gproji_stays(s, v)) {
-            s->held[3 * (size_t)v + 1] = s->plane;
-            s->held[3 * (size_t)s->count++ + 2] = v;
+            s->looked[v] = s->plane;
+            s->queue[s->count++] = v;
         } else if (off = gproji_off_plane(s, v), off > gproji_plane_far && off > s->off) {
             s->off = off, s->vertex = v;
         }
@@ -23086,7 +23121,7 @@ GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     s->count = 0, s->vertex = -1, s->off = 0;
     for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
-        if (s->held[3 * (size_t)v] == 0) continue;
+        if (s->kept[v] == 0) continue;
         if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
         gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
     }
@@ -23094,7 +23129,7 @@ GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     s->plane++;
     gproji_spread_to(s, face);
     for (head = 0; head < s->count; ++head) {
-        int32_t start = mesh->vertex_halfedge[(int32_t)s->held[3 * (size_t)head + 2]];
+        int32_t start = mesh->vertex_halfedge[s->queue[head]];
         h = start;
         do {
             if (mesh->face[h] >= 0 && mesh->face_degree[mesh->face[h]] == 4) gproji_spread_to(s, mesh->face[h]);
@@ -23108,7 +23143,7 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
     const gproj_mesh *mesh = s->form->mesh;
     int32_t k;
     for (k = 0; k < s->count; ++k) {
-        int32_t v = (int32_t)s->held[3 * (size_t)k + 2], start = mesh->vertex_halfedge[v], h = start;
+        int32_t v = s->queue[k], start = mesh->vertex_halfedge[v], h = start;
         const double *own = load + 3 * (size_t)v;
         if (s->form->statics->axes[v] != GPROJI_AXES ||
             !(fabs(gproji_dot3(own, s->normal)) > gproji_plane_far * gproji_length3(own)))
@@ -23175,15 +23210,15 @@ GPROJI_INTERNAL double gproji_held_angle(const gproji_spread *s, int32_t v) {
 }
 
 /* Says by how much the two sums differ in a part of the mesh whose boundary stays, and which vertex has the largest
-   share in that. Here held[3 v + 1] becomes the colour of vertex v, 1 or -1. */
+   share in that. s->looked becomes the colour, 1 or -1. */
 GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) {
     static const double noticeable = 0.1; /* radians; less may be the curvature */
     const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_part *part;
     size_t length = strlen(result->message);
-    double *held = s->held, most = noticeable;
-    int32_t vertex = -1, count = 0, faces, v, i;
+    double most = noticeable;
+    int32_t *colour = s->looked, vertex = -1, count = 0, faces, v, i;
     /* 1. Is every face to be flat and circular? */
     if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return;
     for (part = form->part; part; part = part->next) {
@@ -23195,8 +23230,8 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     }
     /* 2. Along a curve with kinks the sums may differ by as much. */
     for (v = 0; v < mesh->vertex_count; ++v) {
-        held[3 * (size_t)v + 1] = 0;
-        if (held[3 * (size_t)v] < 0) most = gproji_fmax(most, noticeable + fabs(GPROJI_PI - gproji_held_angle(s, v)));
+        colour[v] = 0;
+        if (s->kept[v] < 0) most = gproji_fmax(most, noticeable + fabs(GPROJI_PI - gproji_held_angle(s, v)));
     }
     /* 3. Each part of the mesh is coloured from one vertex on. Regular faces have the same sums, so only what a vertex
        has more than in these is summed. With a face that has an odd number of corners there are no such colours. */
@@ -23204,25 +23239,24 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
         double sum = 0, largest[2] = {0, 0};
         int32_t head = count, at[2] = {-1, -1};
         bool edged = false, loose = false;
-        if (held[3 * (size_t)v + 1] != 0 || mesh->vertex_halfedge[v] < 0) continue;
-        held[3 * (size_t)v + 1] = 1;
-        for (held[3 * (size_t)count++ + 2] = v; head < count; ++head) {
-            int32_t u = (int32_t)held[3 * (size_t)head + 2], start = mesh->vertex_halfedge[u], h = start, side;
-            double colour = held[3 * (size_t)u + 1], more = 2 * GPROJI_PI;
+        if (colour[v] != 0 || mesh->vertex_halfedge[v] < 0) continue;
+        colour[v] = 1;
+        for (s->queue[count++] = v; head < count; ++head) {
+            int32_t u = s->queue[head], start = mesh->vertex_halfedge[u], h = start, side;
+            double more = 2 * GPROJI_PI;
             if (gproj_mesh_is_boundary_vertex(mesh, u)) {
                 edged = true;
-                loose = loose || held[3 * (size_t)u] == 0;
+                loose = loose || s->kept[u] == 0;
                 more = gproji_stays(s, u) ? gproji_held_angle(s, u) : GPROJI_PI;
             }
             do {
                 int32_t w = mesh->origin[h ^ 1], face = mesh->face[h];
-                double *other = &held[3 * (size_t)w + 1];
                 if (face >= 0) more -= GPROJI_PI * (1 - 2.0 / mesh->face_degree[face]);
-                loose = loose || *other == colour;
-                if (*other == 0) held[3 * (size_t)count++ + 2] = w, *other = -colour;
+                loose = loose || colour[w] == colour[u];
+                if (colour[w] == 0) s->queue[count++] = w, colour[w] = -colour[u];
                 h = gproji_rotate(mesh, h);
             } while (h != start);
-            more *= colour;
+            more *= colour[u];
             sum += more;
             side = more < 0;
             if (fabs(more) > largest[side]) largest[side] = fabs(more), at[side] = u;
@@ -23245,6 +23279,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
+    int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
     int32_t f, v, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
     bool planar = gproji_is_on(form, form->planarity);
     for (f = 0; planar && f < form->mesh->face_count; ++f) {
@@ -23260,19 +23295,20 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
                       "let one of them go%s",
                       face, corners, worst, bent > 1 ? ", and others likewise" : "",
                       worst < 1e-6 ? ", or set a larger tolerance" : "");
-    else if (all == form->mesh->vertex_count)
+    else if (all == vertices)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
     else if (planar) {
         gproji_spread spread;
         memset(&spread, 0, sizeof spread);
-        spread.form = form, spread.held = held, spread.value = value;
-        for (v = 0; v < form->mesh->vertex_count; ++v) { /* one number for each vertex, and room for two */
-            double *of = held + 3 * (size_t)v;
-            bool held_all = of[0] + of[1] + of[2] == 3, glides = of[0] < 0 || of[1] < 0 || of[2] < 0;
-            of[0] = held_all ? 1 : glides ? -1 : 0;
-            of[1] = of[2] = 0;
+        spread.form = form, spread.kept = kept, spread.value = value;
+        spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
+        for (v = 0; v < vertices; ++v) { /* in place: three integers a vertex where three numbers were */
+            const double *of = held + 3 * (size_t)v;
+            bool stays = of[0] + of[1] + of[2] == 3, glides = of[0] < 0 || of[1] < 0 || of[2] < 0;
+            kept[v] = stays ? 1 : glides ? -1 : 0;
         }
+        memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
         if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
     }
     return bent > 0;
@@ -23622,7 +23658,7 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
         local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
         if (!local) return;
         *local = i;
-        gproji_place_row(s, group, i, gproji_metric_near, 0);
+        gproji_set_row(s, group, i, gproji_metric_near, 0);
     }
     for (e = 0; e < mesh->edge_count && gproji_form_ready(form); ++e) {
         local = gproji_add_placed_rows(s, group, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
@@ -23642,7 +23678,7 @@ GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
         int32_t e = (r - count) / 3, k = (r - count) % 3;
         double from =
             r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
-        gproji_place_row(form->system, group, r, g->row[r].weight, -from);
+        gproji_set_row(form->system, group, r, g->row[r].weight, -from);
     }
 }
 
@@ -23807,27 +23843,17 @@ failed:
     return false;
 }
 
-/* Has the solve led farther than vertices may be? Then their positions are not written, and the solve has ended. */
-GPROJI_INTERNAL bool gproji_ends_beyond(gproj_form *form) {
+/* Has the solve led farther than vertices may be? */
+GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
     const double *x = gproj_system_values(form->system);
-    gproj_result *result = &form->solve.loop.result;
-    bool beyond = false;
     int32_t i, k;
-    for (i = 0; i < form->mesh->vertex_count && !beyond; ++i) {
+    for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
         gproji_from_internal(form, x + 3 * (size_t)i, p);
         for (k = 0; k < 3; ++k)
-            beyond = beyond || !(fabs(x[3 * i + k]) <= gproji_farthest && fabs(p[k]) <= GPROJI_COORDINATE_MAX);
+            if (!(fabs(x[3 * i + k]) <= gproji_farthest && fabs(p[k]) <= GPROJI_COORDINATE_MAX)) return true;
     }
-    if (!beyond) return false;
-    form->solve.on = false, form->solve.finished = true;
-    gproji_load_positions(form);
-    result->outcome = GPROJ_STALLED;
-    gproji_format(
-        result->message, sizeof result->message,
-        "the steps have led beyond coordinates of 1e70 or 1e20 mean edge lengths, so the mesh is left where it was: "
-        "ask for less, or fix vertices");
-    return true;
+    return false;
 }
 
 /* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
@@ -23856,7 +23882,17 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     ended = gproji_run(loop, seconds);
     if (ended) gproji_doubt_equilibrium(form, result);
     if (ended) form->solve.on = false, form->solve.finished = true;
-    if (result->outcome == GPROJ_FAILED || gproji_ends_beyond(form)) return *result;
+    if (result->outcome == GPROJ_FAILED) return *result;
+    if (gproji_is_beyond(form)) {
+        form->solve.on = false, form->solve.finished = true;
+        gproji_load_positions(form);
+        result->outcome = GPROJ_STALLED;
+        gproji_format(result->message, sizeof result->message,
+                      "the steps have led beyond coordinates of 1e70 or 1e20 mean edge lengths, so the mesh is left "
+                      "where it was: "
+                      "ask for less, or fix vertices");
+        return *result;
+    }
     gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
@@ -23864,12 +23900,11 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
-        const char *advice = strstr(result->message, gproji_more_iterations);
-        size_t length = strlen(result->message), cut = sizeof gproji_more_iterations - 1;
+        size_t length = strlen(result->message);
         if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
-        /* More iterations would not help against what is held. */
-        if (advice && result->message[length])
-            memmove(result->message + (advice - result->message), advice + cut, strlen(advice + cut) + 1);
+        if (loop->hopeful && !result->message[length]) /* nothing is known against it */
+            gproji_append(result->message, sizeof result->message, length, gproji_more_iterations,
+                          sizeof gproji_more_iterations - 1);
         doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
         if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }
@@ -23904,16 +23939,16 @@ GPROJI_INTERNAL double gproji_lack(const gproj_result *result) {
    them: with wishes if it was the nearest that was looked for. */
 GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, double load_scale, bool nearest) {
     gproji_part *part;
-    if (nearest) gproji_set_nearest_weights(form->system, gproji_nearest_scale);
+    if (nearest) gproji_set_nearest_weights(form->system, gproji_nearest_scale, true);
     if (form->statics) form->statics->load_scale = load_scale;
     /* What refreshes keep, such as segments of curves, is of later attempts. */
     for (part = form->part; part; part = part->next)
         if (part->rule->acts && part->rule->acts->refresh && part->rule->acts->start) part->rule->acts->start(part);
     memcpy(gproj_system_values(form->system), end, (size_t)gproj_system_variable_count(form->system) * sizeof *end);
-    gproji_hold(form->system, true);
+    gproji_lock(form->system, true);
     gproji_refresh_groups(form->system);
     gproji_evaluate(form->system);
-    gproji_hold(form->system, false);
+    gproji_lock(form->system, false);
     gproji_store_positions(form, form->before);
 }
 
@@ -24116,7 +24151,7 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             seen[kind] = true;
         }
         if (group < 0 || group >= have) {
-            gproji_spoil(stream, "a group is not one of the form");
+            gproji_fail_stream(stream, "a group is not one of the form");
             break;
         }
         part = gproji_part_of(form, group);
@@ -24159,13 +24194,13 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         }
         if (!in || k == count || stream->wrong) continue;
         if (stream->mode == GPROJI_CHECK && (corners->marked[item] & GPROJI_CORNER_LISTED))
-            gproji_spoil(stream, "a corner comes twice");
+            gproji_fail_stream(stream, "a corner comes twice");
         corners->marked[item] |= GPROJI_CORNER_LISTED;
         if (corners->row[item] >= 0 || gproji_add_corner(part, item) >= 0) continue;
         if (gproj_system_error(form->system)->code != GPROJ_OK)
-            gproji_spoil_memory(stream);
+            gproji_fail_stream_memory(stream);
         else
-            gproji_spoil(stream, "a corner is not one of a face");
+            gproji_fail_stream(stream, "a corner is not one of a face");
     }
     for (k = 0; in && corners && k < corners->items; ++k) corners->marked[k] &= (uint8_t)~GPROJI_CORNER_LISTED;
     if (corners) corners->listed = count;
@@ -24527,9 +24562,9 @@ GPROJI_INTERNAL gproj_code gproji_linearise_drag(gproj_drag *drag, bool restore,
     gproji_gather_handles(drag, drag->base, drag->held);
     memcpy(drag->from, x, n * sizeof *drag->from);
     /* 4. What refreshes keep is that of the last linearisation, so that it can be repeated. */
-    gproji_hold(system, true);
+    gproji_lock(system, true);
     gproji_refresh_groups(system);
-    gproji_hold(system, false);
+    gproji_lock(system, false);
     drag->info.linearisations++;
     return GPROJ_OK;
 }
@@ -24566,6 +24601,7 @@ GPROJI_INTERNAL double gproji_follow_handles(gproj_drag *drag, double most, doub
     return residual;
 }
 
+/* Can handles move? Else drag->error says why not. */
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     if (!gproji_form_ready(drag->form)) {
         gproji_pass_on(&drag->error, gproj_form_error(drag->form));

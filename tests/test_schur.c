@@ -309,7 +309,7 @@ static void gprojt_wake_guard(gproj_form *form) {
     GPROJT_CHECK(g->weight > 0);
     for (round = 0; round < 2; ++round) {
         for (r = 0; r < g->row_count; r += 3) g->row[r].active = g->row[r].weight > 0;
-        if (round == 0) GPROJT_CHECK(gproji_place_woken(&form->solve.loop, gproji_wake_guard(form->system)));
+        if (round == 0) GPROJT_CHECK(gproji_recompile(&form->solve.loop, gproji_wake_guard(form->system)));
     }
     GPROJT_CHECK(!gproji_wake_guard(form->system) && form->system->schur.on);
 }
