@@ -95,6 +95,11 @@ refuses 2 'expected a number larger than 0' vault.obj --young 0
 refuses 2 'expected a whole number from 1 to' vault.obj --divide 0
 refuses 2 'must end in .json' vault.obj --report r.txt
 refuses 2 'there is no vertex 49; the mesh has 49' vault.obj --pinned 0-49
+refuses 2 '--fixed ,: this names no vertex' vault.obj --fixed ,
+refuses 2 '--scale is given twice' vault.obj --scale 1 --scale 2
+cp loads.csv loads.json
+refuses 2 "would overwrite the input 'loads.json'" vault.obj --loads loads.json --report loads.json
+cmp -s loads.csv loads.json && pass || fail 'loads are lost'
 refuses 2 'give one' vault.obj --scale 2 --mean-edge 1 --pinned boundary
 refuses 2 'nothing loads the frame' vault.obj --density 0
 : >empty.obj

@@ -572,11 +572,34 @@ expect 3 "before one.txt was changed;" grid.obj -o new.obj --planar --fix one.tx
 run grid.obj -o part.obj --planar --move 40,0,0,9 --time-limit 1e-9
 awk '/^v / && ++n == 41 { exit !($4 < 5) }' part.obj && pass || fail "--time-limit does not end the drag of --move"
 
+# A solve that has ended stays as it is: a further run takes no step, and gives the same verdict, mesh and residuals.
+for part in whole again; do
+    run grid.obj -o $part.obj --planar --fairness 0.1 --state ended.state --residuals $part.csv --report $part.json
+    [ $status -eq 0 ] && grep '^all constraints' out.txt >$part.txt && pass || fail "$part solve with --state exits with $status"
+done
+cmp -s whole.obj again.obj && cmp -s whole.txt again.txt && pass || fail "an ended solve goes on"
+grep -q '"outcome": "converged"' again.json && [ "$(wc -l <again.csv)" -gt 10 ] && pass || fail "what an ended solve reports"
+: >failed.txt
+for part in 1 2 3 4; do
+    run grid.obj -o again.obj --planar --fix boundary --edge-length 5,5 --state failed.state --iterations 60
+    [ $status -eq 1 ] || fail "an impossible solve in parts exits with $status"
+    sed -n 2p out.txt >>failed.txt
+done
+[ "$(sort -u failed.txt | wc -l)" -lt 4 ] && tail -n 1 failed.txt | grep -q 'no step makes\|the iterations ran out' && pass ||
+    fail "an impossible solve in parts has no end: $(tail -n 1 failed.txt)"
+run grid.obj -o part.obj --planar --fix 0,8,72,80 --free 0 --state free.state --iterations 2
+expect 3 "with --free 0, not --free 8;" grid.obj -o new.obj --planar --fix 0,8,72,80 --free 8 --state free.state
+
 # A solve that has not reached its end still leaves its outputs, but for panels that cannot be laid flat.
 rm -f panels.svg part.obj panels.state
 run grid.obj -o part.obj --planar --panels panels.svg --iterations 1 --state panels.state
 [ $status -eq 1 ] && [ -s part.obj ] && [ -s panels.state ] && [ ! -e panels.svg ] && grep -q 'panels.svg is not written: face' err.txt &&
     pass || fail "panels of an unfinished solve: exits with $status, $(head -n 1 err.txt)"
+printf 'old\n' >panels.svg
+run grid.obj -o part.obj --planar --panels panels.svg --iterations 1
+grep -q 'panels.svg is not written, and what is there belongs to an earlier mesh: face' err.txt && pass ||
+    fail "panels of before: $(head -n 1 err.txt)"
+rm -f panels.svg
 run grid.obj -o part.obj --planar --tolerance 0.5 --fairness 0.1 --time-limit 1e-9
 [ $status -eq 0 ] && grep -q 'note: all that must hold holds' out.txt && pass || fail "all holds as the time runs out: $status"
 
@@ -586,6 +609,27 @@ expect 2 "would overwrite the input 'other.obj'" grid.obj -o other.obj --planar 
 expect 2 "would overwrite the input 'other.obj'" grid.obj -o other.obj --planar --reference other.obj
 run other.obj -o other.obj --planar --glide other.obj
 [ $status -eq 0 ] && pass || fail "the input is replaced, and glides along itself: $(head -n 1 err.txt)"
+
+awk 'BEGIN { for (i = 0; i < 12; i++) printf "v %.17g %.17g 0\n", cos(i * 0.5235987755982988), sin(i * 0.5235987755982988)
+    print "l 1 2 3 4 5 6 7 8 9 10 11 12 1" }' >ring.obj
+expect 2 "would overwrite the input 'ring.obj'" --fill ring.obj -o ring.obj --planar
+
+# A byte order mark is no part of a list; a weight of 0 asks for nothing; loads say something; a title is well-formed XML.
+printf '\357\273\2770,8 # by an editor\n' >marked.txt
+run grid.obj -o part.obj --planar --fix marked.txt
+[ $status -eq 0 ] && pass || fail "a byte order mark before a list: $(head -n 1 err.txt)"
+run grid.obj -o part.obj --planar --fix corners --move 40,0,0,9=0
+run grid.obj -o whole.obj --planar --fix corners
+cmp -s part.obj whole.obj && pass || fail "--move with the weight 0 moves something"
+printf '# nothing\n' >none.csv
+expect 3 "none.csv, line 1: there are no loads in it" grid.obj -o new.obj --equilibrium --loads none.csv
+expect 3 "loads" grid.obj -o new.obj --equilibrium --fix boundary --density 1e300 --picture new.svg
+grep -q 'no error' err.txt && fail "an error that is none" || pass
+expect 2 "--circular is for planar faces" grid.obj -o new.obj --circular
+expect 2 "--gauss needs the normals of planar faces" grid.obj -o new.obj --gauss 0.1 --planar=0
+expect 3 "--lift 1e+50 cannot be done: " grid.obj -o new.obj --planar --lift 1e50
+run grid.obj -o part.obj --planar --picture title.svg --title "$(printf 'a\377b \303\274 <')"
+LC_ALL=C grep -q "a?b $(printf '\303\274') &lt;" title.svg && pass || fail "a title that is not UTF-8"
 
 # Files of forces and loads say something.
 : >none.csv

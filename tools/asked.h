@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define GPROJX_ASKED_MARK "guidedproj state 2\n"
+#define GPROJX_ASKED_MARK "guidedproj state 3\n"
 
 typedef struct gprojx_asked_item {
     char *text; /* an option as it was given; of a file, a hash of what is in it */

@@ -250,6 +250,7 @@ static void print_help(void) {
 }
 
 static bool read_command_line(tool *t, int argc, char **argv) {
+    bool seen[OPTION_COUNT] = {false};
     int i, k;
     for (i = 1; i < argc && !t->help; ++i) {
         const char *name = argv[i] + 2, *equals = strchr(argv[i], '='), *value = equals ? equals + 1 : NULL;
@@ -263,6 +264,9 @@ static bool read_command_line(tool *t, int argc, char **argv) {
         for (k = 0; k < OPTION_COUNT; ++k)
             if (strncmp(name, options[k].name, size) == 0 && !options[k].name[size]) break;
         if (k == OPTION_COUNT) return fail(t, EXIT_USAGE, "there is no option %s", argv[i]);
+        if (seen[k] && options[k].read != add_support)
+            return fail(t, EXIT_USAGE, "--%s is given twice", options[k].name);
+        seen[k] = true;
         if (!options[k].value[0] && value) return fail(t, EXIT_USAGE, "--%s takes no value", options[k].name);
         if (options[k].value[0] && !value) {
             if (++i == argc) return fail(t, EXIT_USAGE, "--%s needs a value: %s", options[k].name, options[k].value);
@@ -288,6 +292,7 @@ static char *load_text(tool *t, const char *path) {
     size_t length;
     char *text = gprojx_load_file(path, gprojx_any_text, MEGABYTES, &length, &error);
     if (!text) fail_error(t, path, ": ", &error);
+    if (text) gprojx_drop_mark(text, &length);
     if (text && strlen(text) < length) fail(t, EXIT_REFUSED, "%s: a zero byte; this is no text", path);
     if (t->exit_code == 0) return text;
     free(text);
@@ -319,11 +324,16 @@ static bool mark_vertices(tool *t, const tool_support *support, bool *mark) {
 static bool hold(tool *t, const tool_support *support) {
     bool *mark = (bool *)take(t, (size_t)t->mesh->vertex_count, sizeof *mark);
     int32_t v, k;
-    if (mark && mark_vertices(t, support, mark))
-        for (v = 0; v < t->mesh->vertex_count; ++v)
+    bool any = false;
+    if (mark && mark_vertices(t, support, mark)) {
+        for (v = 0; v < t->mesh->vertex_count; ++v) {
+            any = any || mark[v];
             for (k = 0; mark[v] && k < 6; ++k)
                 if (support->option[0] == 'f' || k == 2 || (support->option[0] == 'p' && k < 3))
                     t->frame.held[6 * (size_t)v + (size_t)k] = true;
+        }
+        if (!any) fail(t, EXIT_USAGE, "--%s %s: this names no vertex of the mesh", support->option, support->which);
+    }
     free(mark);
     return t->exit_code == 0;
 }
@@ -727,12 +737,26 @@ static bool fail_output(tool *t, const gprojx_output *output, const gproj_error 
                 error->message);
 }
 
+/* Refuses to write over a file that this run reads. */
+static bool keep_apart(tool *t, const gprojx_output *output, const char *path) {
+    char *real = path && !output->device ? realpath(path, NULL) : NULL;
+    bool same = real && strcmp(real, output->target) == 0;
+    free(real);
+    return !same || fail(t, EXIT_USAGE, "the output '%s' would overwrite the input '%s'", output->path, path);
+}
+
 static bool prepare_outputs(tool *t) {
     gproj_error error;
-    int i;
-    for (i = 0; i < OUTPUT_COUNT; ++i)
-        if (t->output[i].path && !gprojx_output_prepare(&t->output[i], &error))
-            return fail_output(t, &t->output[i], &error);
+    int i, k;
+    for (i = 0; i < OUTPUT_COUNT; ++i) {
+        gprojx_output *output = &t->output[i];
+        if (!output->path) continue;
+        if (!gprojx_output_prepare(output, &error)) return fail_output(t, output, &error);
+        if (!keep_apart(t, output, t->input) || !keep_apart(t, output, t->loads) || !keep_apart(t, output, t->forces))
+            return false;
+        for (k = 0; t->support[k].which; ++k)
+            if (!keep_apart(t, output, t->support[k].which)) return false;
+    }
     return true;
 }
 

@@ -137,6 +137,7 @@ typedef struct tool {
     int32_t fix_count, glide_count, move_count;
     int32_t iterations, threads;
     int32_t part;       /* iterations of this run with --state; 0: any number */
+    bool ended;         /* with --state: the solve has */
     gprojx_asked asked; /* the options and files that decide about the solve */
     int32_t file_limit; /* in MB */
     double epsilon, tolerance, time_limit;
@@ -744,7 +745,7 @@ static bool prepare_outputs(tool *t) {
                 return fail(t, EXIT_USAGE, "two outputs have the same path '%s'", output->path);
         if (!keep_problem_apart(t, output)) return false;
         /* Only the mesh that comes in may be replaced, by the one that goes out. */
-        if (i == OUTPUT_MESH && goes_to(t, output, t->input, strlen(t->input))) continue;
+        if (i == OUTPUT_MESH && !t->fill && goes_to(t, output, t->input, strlen(t->input))) continue;
         if (!keep_apart(t, output, t->input, strlen(t->input))) return false;
         for (j = 0; j < t->fix_count; ++j)
             if (!keep_apart(t, output, t->fix[j].text, t->fix[j].length)) return false;
@@ -802,6 +803,7 @@ static char *load_file(tool *t, const char *path, gprojx_is_text is_text, size_t
 static char *load_text(tool *t, const char *path) {
     size_t length;
     char *text = load_file(t, path, gprojx_any_text, &length);
+    if (text) gprojx_drop_mark(text, &length);
     if (!text || strlen(text) == length) return text;
     fail(t, EXIT_REFUSED, "%s: a zero byte; this is a device, a binary file or UTF-16, not a text", path);
     free(text);
@@ -1079,7 +1081,10 @@ static bool lift(tool *t) {
     gproj_add_fairness(form, 0.3);
     gproj_add_closeness(form, 0.01);
     result = gproj_solve(form, 10, NULL);
-    if (result.outcome == GPROJ_FAILED) fail_library(t, NULL, gproj_form_error(form));
+    if (result.outcome == GPROJ_FAILED)
+        fail_library(t, NULL, gproj_form_error(form));
+    else if (result.outcome != GPROJ_CONVERGED)
+        fail(t, EXIT_REFUSED, "%s: --lift %g cannot be done: %s", t->input, t->lift, result.message);
     gproj_form_destroy(form);
     return t->exit_code == 0;
 }
@@ -1509,11 +1514,12 @@ static int32_t add_equilibrium(tool *t, const tool_demand *demand) {
     size_t vertices = (size_t)t->mesh->vertex_count;
     int32_t *list = (int32_t *)take(t, vertices, sizeof *list), i, group = -1;
     uint8_t *slides = (uint8_t *)take(t, vertices, sizeof *slides);
-    double *densities = edge_numbers(t, "densities", "density", t->density);
+    double density = t->loads_given ? t->density : 1;
+    double *densities = edge_numbers(t, "densities", "density", density);
     gproj_supports supports = {.vertex = list};
     t->is_support = (bool *)take(t, vertices, sizeof *t->is_support);
     if (list && slides && t->is_support && t->exit_code == 0 && (!t->loads || read_loads(t)) && mark_supports(t)) {
-        const gproj_loads loads = {.density = t->loads_given ? t->density : 1,
+        const gproj_loads loads = {.density = density,
                                    .edge_density = densities,
                                    .area_load = t->area_load,
                                    .snow = t->snow,
@@ -1642,7 +1648,8 @@ static const tool_option options[] = {
     {"state", "FILE",
      "where FILE exists, the work goes on from there: it was written with the same input and options, but for "
      "outputs, --time-limit, --iterations and --threads. At the end the state is written to it. With --time-limit or "
-     "--iterations, then those of this run, long work can be done in parts: exit status 1 until it has ended",
+     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome time_out in "
+     "--report, until it has ended. Then further runs take no step and give the same verdict",
      set_output, SETS(output[OUTPUT_STATE])},
 
     {"planar", "[=W]", "all faces are planar", set_must, PLACE(planar), HARD, SHAPES, .build = gproj_add_planarity,
@@ -1916,7 +1923,8 @@ static bool fail_unknown(tool *t, const char *word, const char *name, size_t siz
 static bool is_for_the_solve(int row) {
     const tool_option *option = &options[row];
     if (option->read == set_output) return false;
-    return option->kind != SETTING || option->needs == &statics || option->place == PLACE(nearest) ||
+    return option->kind != SETTING || option->needs == &statics || option->needs == &a_curve ||
+           option->place == PLACE(weld) || option->place == PLACE(freed) || option->place == PLACE(nearest) ||
            option->place == PLACE(plain) || option->place == PLACE(tolerance) || option->place == PLACE(epsilon);
 }
 
@@ -2117,6 +2125,11 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (t->seen[i] && options[i].needs == &normals && t->own[i].weight > 0 && !(t->planar.weight > 0))
+            return fail(t, EXIT_USAGE, "--%s %s", options[i].name, normals.why);
+    if (t->circular.weight > 0 && !(t->planar.weight > 0))
+        return fail(t, EXIT_USAGE, "--circular is for planar faces, others would only be on spheres: add --planar");
     if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
         return fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
     return true;
@@ -2423,8 +2436,9 @@ static bool on_iteration(void *user, gproj_system *system, const gproj_iteration
 static bool measure_imbalance(tool *t, double *of_faces) {
     const gproj_mesh *mesh = t->mesh;
     double *residual = (double *)take(t, (size_t)mesh->vertex_count, sizeof *residual);
+    gproj_error error = {GPROJ_OK};
     int32_t f, k;
-    bool good = residual && gproj_find_forces(t->form, NULL, residual, NULL) == GPROJ_OK;
+    bool good = residual && gproj_find_forces(t->form, NULL, residual, &error) == GPROJ_OK;
     for (f = 0; good && f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         of_faces[f] = 0;
@@ -2432,7 +2446,7 @@ static bool measure_imbalance(tool *t, double *of_faces) {
             of_faces[f] += residual[mesh->origin[h]] / mesh->face_degree[f];
     }
     free(residual);
-    return good || fail_library(t, NULL, gproj_form_error(t->form));
+    return good || t->exit_code != 0 || fail_library(t, NULL, &error);
 }
 
 static bool measure_forces(tool *t) {
@@ -2488,17 +2502,27 @@ static bool drag_to(tool *t, const gproj_handles *handles, const double *positio
     return t->result.outcome != GPROJ_FAILED || fail_library(t, NULL, gproj_form_error(t->form));
 }
 
+/* Is there a --move with a weight? */
+static bool pulls_at_all(const tool *t) {
+    int32_t i = 0;
+    while (i < t->move_count && !(t->move[i].weight > 0)) ++i;
+    return i < t->move_count;
+}
+
 /* Drags the moved vertices to their places, an edge at a time, with a release each. Forces have no tangent space before
    their first solve: with --equilibrium vertices are not dragged. What the time does not reach is left to the solve. */
 static bool drag(tool *t, double begin) {
     int32_t *vertex = (int32_t *)take(t, (size_t)t->move_count, sizeof *vertex), i, k, count;
-    const gproj_handles handles = {.count = t->move_count, .vertex = vertex};
+    gproj_handles handles = {.vertex = vertex};
     double *position = (double *)take(t, 3 * (size_t)t->move_count, sizeof *position), farthest = 0;
-    bool good = vertex && position;
+    const tool_move **which = (const tool_move **)take(t, (size_t)t->move_count, sizeof *which);
+    bool good = vertex && position && which;
     for (i = 0; good && i < t->move_count; ++i) {
         const tool_move *move = &t->move[i];
         const double *p = t->original + 3 * (size_t)move->vertex;
-        vertex[i] = move->vertex;
+        if (!(move->weight > 0)) continue;
+        which[handles.count] = move;
+        vertex[handles.count++] = move->vertex;
         farthest =
             fmax(farthest, hypot(hypot(move->position[0] - p[0], move->position[1] - p[1]), move->position[2] - p[2]));
     }
@@ -2506,15 +2530,15 @@ static bool drag(tool *t, double begin) {
     /* Targets would pull at the vertices that the drag leads; they act again in the solve. */
     switch_moves(t, false);
     for (i = 1; good && i <= count && (t->time_limit <= 0 || now(NULL) - begin < t->time_limit); ++i) {
-        for (k = 0; k < 3 * t->move_count; ++k) {
-            const tool_move *move = &t->move[k / 3];
+        for (k = 0; k < 3 * handles.count; ++k) {
+            const tool_move *move = which[k / 3];
             double from = t->original[3 * (size_t)move->vertex + (size_t)(k % 3)];
             position[k] = from + (double)i / count * (move->position[k % 3] - from);
         }
         good = drag_to(t, &handles, position);
     }
     switch_moves(t, true);
-    free(vertex), free(position);
+    free(vertex), free(position), free(which);
     return good;
 }
 
@@ -2532,6 +2556,73 @@ static bool pull(tool *t) {
         t->line = 0;
     }
     return true;
+}
+
+/* Writes a number that reads back to the same bits, whatever the locale. */
+static void write_number(FILE *file, double value, char after) {
+    char text[GPROJ_NUMBER_SIZE];
+    gproj_number_write(value, text);
+    fputs(text, file);
+    fputc(after, file);
+}
+
+/* A verdict as text, for a state whose solve has ended: numbers, the sentence and a NUL. The seconds are not kept. */
+
+enum {
+    VERDICT_NUMBERS = 18
+};
+
+/* -1 stands for what is infinite or not a number; none of the numbers is negative otherwise, but for indices. */
+static double plain_number(double x) { return x <= DBL_MAX ? x : -1; }
+
+static bool write_verdict(const gproj_result *r, FILE *file) {
+    const gproj_spoiled *s = &r->spoiled;
+    const double number[VERDICT_NUMBERS] = {r->outcome,
+                                            r->iterations,
+                                            r->damped,
+                                            r->attempts,
+                                            plain_number(r->residual),
+                                            plain_number(r->tolerance),
+                                            plain_number(r->step),
+                                            plain_number(r->optimality),
+                                            r->worst_group,
+                                            r->worst_element,
+                                            s->turned,
+                                            s->crossed,
+                                            s->folded,
+                                            s->collapsed_edges,
+                                            s->collapsed_faces,
+                                            s->spikes,
+                                            s->place,
+                                            s->element};
+    int i;
+    for (i = 0; i < VERDICT_NUMBERS; ++i) write_number(file, number[i], i < VERDICT_NUMBERS - 1 ? ',' : '\n');
+    return fputs(r->message, file) >= 0 && fputc(0, file) == 0;
+}
+
+/* Reads a verdict from bytes, `room` of them. Returns its length; 0: there is none. */
+static size_t read_verdict(const char *text, size_t room, gproj_result *r) {
+    const char *end = (const char *)memchr(text, 0, room), *line = end ? strchr(text, '\n') : NULL;
+    gproj_spoiled *s = &r->spoiled;
+    double number[VERDICT_NUMBERS];
+    int i;
+    memset(r, 0, sizeof *r);
+    if (!line || !gprojx_read_fields(text, (size_t)(line - text), VERDICT_NUMBERS, number)) return 0;
+    for (i = 0; i < VERDICT_NUMBERS; ++i) {
+        bool real = i >= 4 && i < 8;
+        if (!real && !(fabs(number[i]) <= INT32_MAX)) return 0;
+        if (real && number[i] < 0) number[i] = HUGE_VAL;
+    }
+    r->outcome = (gproj_outcome)number[0];
+    r->iterations = (int32_t)number[1], r->damped = (int32_t)number[2], r->attempts = (int32_t)number[3];
+    r->residual = number[4], r->tolerance = number[5], r->step = number[6], r->optimality = number[7];
+    r->worst_group = (int32_t)number[8], r->worst_element = (int32_t)number[9];
+    s->turned = (int32_t)number[10], s->crossed = (int32_t)number[11], s->folded = (int32_t)number[12];
+    s->collapsed_edges = (int32_t)number[13], s->collapsed_faces = (int32_t)number[14];
+    s->spikes = (int32_t)number[15], s->place = (gproj_place)number[16], s->element = (int32_t)number[17];
+    s->total = s->turned + s->crossed + s->folded + s->collapsed_edges + s->collapsed_faces + s->spikes;
+    snprintf(r->message, sizeof r->message, "%s", line + 1);
+    return (size_t)(end + 1 - text);
 }
 
 /* Tells whether there is a state to go on from. */
@@ -2558,13 +2649,19 @@ static bool restore(tool *t) {
              "%s: this state was written %s; only outputs, --time-limit, --iterations and --threads may change. Remove "
              "it to begin anew",
              path, words);
-    else if (gproj_state_restore(t->form, bytes + start, size - start, &error) != GPROJ_OK)
-        fail_library(t, path, &error);
+    else {
+        size_t length = read_verdict((const char *)bytes + start, size - start, &t->result);
+        t->ended = length > 0;
+        if (length == 0) length = 1; /* a NUL only */
+        if (gproj_state_restore(t->form, bytes + start + length, size - start - length, &error) != GPROJ_OK)
+            fail_library(t, path, &error);
+    }
     free(bytes);
     return t->exit_code == 0;
 }
 
-/* Solves from a saved state or from the beginning, an iteration at a time, so that a later run can go on. */
+/* Solves from a saved state or from the beginning, an iteration at a time, so that a later run can go on; a solve that has
+   ended stays as it is. */
 static bool solve_in_parts(tool *t, const gproj_solve_options *how, double begin) {
     double limit = how->time_budget;
     gproj_solve_options options = *how;
@@ -2572,11 +2669,18 @@ static bool solve_in_parts(tool *t, const gproj_solve_options *how, double begin
     options.time_budget = 0;
     gproj_solve_begin(t->form, t->iterations, &options, NULL);
     if (!restore(t)) return false;
-    if (!gproj_solve_is_on(t->form)) gproj_solve_begin(t->form, t->iterations, &options, NULL);
+    if (t->ended) { /* evaluates what residuals and report tell of groups */
+        const gproj_result verdict = t->result;
+        const gproj_solve_options still = {.skip_closeness = true, .skip_guard = true};
+        t->result = gproj_solve(t->form, 0, &still);
+        if (t->result.outcome != GPROJ_FAILED) t->result = verdict;
+        return true;
+    }
     do {
         t->result = gproj_solve_advance(t->form, 0);
     } while (gproj_solve_is_on(t->form) && ++done != t->part && (limit <= 0 || now(NULL) - begin < limit));
-    if (gproj_solve_is_on(t->form) && done == t->part) { /* the library's sentence blames the time */
+    t->ended = !gproj_solve_is_on(t->form);
+    if (!t->ended && done == t->part) { /* the library's sentence blames the time */
         char *message = t->result.message, copy[sizeof t->result.message];
         const char *rest = strchr(message, ':');
         snprintf(copy, sizeof copy, "the iterations of this run are done%s", rest ? rest : "");
@@ -2600,7 +2704,7 @@ static bool prepare_records(tool *t) {
 }
 
 static bool solve(tool *t) {
-    bool dragged = t->move_count > 0 && !t->equilibrium.given && !t->plain;
+    bool dragged = pulls_at_all(t) && !t->equilibrium.given && !t->plain;
     bool unguided = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
     const gproj_solve_options how = {.tolerance = t->tolerance,
                                      .epsilon = t->epsilon,
@@ -2652,7 +2756,9 @@ static bool make_panels(tool *t) {
     if (!path) return true;
     t->panels = gprojx_panels_create(t->mesh, t->support, &t->sheet, &error);
     if (t->panels || is_exact(t) || error.code == GPROJ_ERROR_MEMORY) return t->panels || fail_library(t, path, &error);
-    fprintf(stderr, "guidedproj: %s is not written: %s\n", path, error.message);
+    fprintf(stderr, "guidedproj: %s is not written%s: %s\n", path,
+            access(t->output[OUTPUT_PANELS].target, F_OK) == 0 ? ", and what is there belongs to an earlier mesh" : "",
+            error.message);
     t->output[OUTPUT_PANELS].path = t->output[OUTPUT_PANEL_LIST].path = NULL;
     return true;
 }
@@ -2741,14 +2847,6 @@ static gproj_code write_picture(tool *t, FILE *file) {
     return gprojx_picture(file, t->mesh, &picture);
 }
 
-/* Writes a number that reads back to the same bits, whatever the locale. */
-static void write_number(FILE *file, double value, char after) {
-    char text[GPROJ_NUMBER_SIZE];
-    gproj_number_write(value, text);
-    fputs(text, file);
-    fputc(after, file);
-}
-
 /* Writes the line KIND,I,X,Y,Z. */
 static void write_vector(FILE *file, const char *kind, int32_t vertex, const double vector[3]) {
     fprintf(file, "%s,%ld,", kind, (long)vertex);
@@ -2828,12 +2926,14 @@ static gproj_code write_panels(tool *t, FILE *file) {
 
 static gproj_code write_panel_list(tool *t, FILE *file) { return gprojx_panels_csv(file, t->panels); }
 
-/* What was asked for, and behind it the library's state. */
+/* What was asked for, the verdict if there is one, and the library's state. */
 static gproj_code write_state(tool *t, FILE *file) {
     size_t size = gproj_state_size(t->form);
     uint8_t *bytes = (uint8_t *)malloc(size);
     gproj_code code = bytes ? gproj_state_save(t->form, bytes, size, NULL) : GPROJ_ERROR_MEMORY;
-    if (code == GPROJ_OK && (!gprojx_asked_write(&t->asked, file) || fwrite(bytes, 1, size, file) != size))
+    if (code == GPROJ_OK &&
+        (!gprojx_asked_write(&t->asked, file) || !(t->ended ? write_verdict(&t->result, file) : fputc(0, file) == 0) ||
+         fwrite(bytes, 1, size, file) != size))
         code = GPROJ_ERROR_FILE;
     free(bytes);
     return code;

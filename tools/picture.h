@@ -22,6 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "json.h" /* for gprojx_utf8_size */
+
 /* Where the eye stands, in degrees: azimuth from the x axis towards the y axis, elevation above the xy plane. */
 typedef struct gprojx_view {
     double azimuth, elevation;
@@ -809,9 +811,11 @@ static void gprojx_put_attribute(FILE *file, const char *name, double x) {
     fputc('"', file);
 }
 
-/* Text with the characters that XML reserves, and without control characters. */
+/* Text with the characters that XML reserves, without control characters, and with ? for bytes that are not UTF-8. */
 static void gprojx_put_text(FILE *file, const char *text) {
+    size_t left = 0; /* bytes of the character under way */
     for (; *text; ++text) {
+        if (left == 0) left = gprojx_utf8_size(text);
         if (*text == '&')
             fputs("&amp;", file);
         else if (*text == '<')
@@ -819,7 +823,8 @@ static void gprojx_put_text(FILE *file, const char *text) {
         else if (*text == '>')
             fputs("&gt;", file);
         else if ((unsigned char)*text >= 32)
-            fputc(*text, file);
+            fputc(left == 0 ? '?' : *text, file);
+        left -= left > 0;
     }
 }
 

@@ -607,7 +607,8 @@ static bool gprojx_mark_edges(gprojx_problem *p, const gprojx_value *v, const ch
     return true;
 }
 
-/* Lists the vertices, edges or faces that an item of a section names, ascending; returns their count, or -1. */
+/* Lists the vertices, edges or faces that an item of a section names, ascending; returns their count, or -1: nothing may
+   be asked of none. */
 static int32_t gprojx_take_list(gprojx_problem *p, const gprojx_value *item, const char *key, const char *section,
                                 gproj_error *error) {
     const gprojx_value *v = gprojx_member(p, item, key);
@@ -619,7 +620,9 @@ static int32_t gprojx_take_list(gprojx_problem *p, const gprojx_value *item, con
         return -1;
     for (i = 0; i < count; ++i)
         if (p->mark[i]) p->list[listed++] = i;
-    return listed;
+    if (listed > 0) return listed;
+    gprojx_problem_refuse(item, section, error, "\"%s\" names none of this mesh", key);
+    return -1;
 }
 
 /* ---- builders ---- */

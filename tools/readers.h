@@ -134,7 +134,7 @@ static bool gprojx_check_vertex(double vertex, int32_t vertex_count, int32_t num
 
 /* Reads a line VERTEX,FX,FY,FZ; skips empty lines, comments after # and a heading in the first line. */
 static bool gprojx_read_load(const char *line, size_t size, int32_t number, int32_t vertex_count, double *load,
-                             gproj_error *error) {
+                             bool *any, gproj_error *error) {
     double field[4];
     size_t end;
     int32_t k;
@@ -145,20 +145,20 @@ static bool gprojx_read_load(const char *line, size_t size, int32_t number, int3
         return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "line %ld: expected VERTEX,FX,FY,FZ", (long)number);
     if (!gprojx_check_vertex(field[0], vertex_count, number, error)) return false;
     for (k = 0; k < 3; ++k) load[3 * (size_t)field[0] + (size_t)k] += field[k + 1];
-    return true;
+    return *any = true;
 }
 
-/* Adds the forces of a CSV text to load, 3 * vertex_count numbers. */
+/* Adds the forces of a CSV text, one at least, to load, 3 * vertex_count numbers. */
 static bool gprojx_read_loads(const char *text, int32_t vertex_count, double *load, gproj_error *error) {
     const char *line = text;
     int32_t number = 1;
-    bool good = true;
-    if (strncmp(text, "\xef\xbb\xbf", 3) == 0) line += 3; /* a byte order mark */
+    bool good = true, any = false;
     for (; good && *line; ++number) {
         size_t size = strcspn(line, "\n");
-        good = gprojx_read_load(line, size, number, vertex_count, load, error);
+        good = gprojx_read_load(line, size, number, vertex_count, load, &any, error);
         line += size + (line[size] != 0);
     }
+    if (good && !any) return gprojx_refuse(error, GPROJ_ERROR_SYNTAX, "line 1: there are no loads in it");
     return good;
 }
 
@@ -175,6 +175,13 @@ static bool gprojx_has_ending(const char *path, const char *ending) {
 
 /* Does a file with these first bytes go on as a text? */
 typedef bool (*gprojx_is_text)(const void *bytes, size_t size);
+
+/* Takes off the byte order mark that some editors put before a text. */
+static void gprojx_drop_mark(char *text, size_t *length) {
+    if (strncmp(text, "\xef\xbb\xbf", 3) != 0) return;
+    *length -= 3;
+    memmove(text, text + 3, *length + 1);
+}
 
 static bool gprojx_any_text(const void *bytes, size_t size) { return (void)bytes, (void)size, true; }
 
