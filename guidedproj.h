@@ -68,8 +68,8 @@
      bend             second-order correction of a step
      stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
      brake            a damping of single variables that acts only after steps have failed
-     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way (in
-                      >>loop a safeguard is a group of corners)
+     guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way; in
+                      the loop's section a safeguard is a group of corners
      attempt          a run of a smooth solve, which may begin again in another way
      pass             (a value of a saved state) count, write, check or read it, see >>stream
      verdict          the outcome of a solve and a sentence about it
@@ -458,7 +458,7 @@ typedef struct gproj_cholesky_info {
     double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
     size_t factor_bytes;    /* memory for the values of L */
     size_t work_bytes;      /* memory for the work arrays in factor and solve */
-    int32_t failed_column;  /* the column of A whose pivot was not > 0 in the last factorisation; else -1 */
+    int32_t failed_column;  /* the column of A whose pivot was not finite and > 0 in the last factorisation; else -1 */
     const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
@@ -478,7 +478,8 @@ GPROJ_API gproj_memory gproj_cholesky_memory(const gproj_cholesky *cholesky);
 /* Analyses the pattern of an n x n symmetric matrix in compressed columns: rows row[start[j]..start[j+1]-1] in
    column j (start: n+1 entries, start[0] = 0), in any order. Each entry off the diagonal stands once, in the lower or
    the upper triangle (mixed or not); diagonal entries may be left out (then 0). Repeated entries are summed. `options`
-   may be NULL. The arrays are not needed after the call. */
+   may be NULL. The arrays are not needed after the call. An earlier analysis and factor are gone, also if this one is
+   refused. */
 GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n, const int64_t *start,
                                             const int32_t *row, const gproj_cholesky_options *options);
 
@@ -489,7 +490,8 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
 GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x);
 
 /* Iterative refinement: improves x by `steps` rounds of x += A^-1 (b - A x), one right-hand side. A is given by
-   the arrays of the analysis and the values of the factorisation. Returns the largest |b - A x| at the end. */
+   the arrays of the analysis and the values of the factorisation. Returns the largest |b - A x| at the end, HUGE_VAL if
+   that is no finite number. */
 GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *start, const int32_t *row,
                                        const double *values, const double *b, double *x, int32_t steps);
 
@@ -543,7 +545,7 @@ typedef struct gproj_least_squares_result {
     size_t work_bytes;
 } gproj_least_squares_result;
 
-/* Solves the problem. x, `columns` numbers: the start, and at the end the solution. Zeros are a good start. A start
+/* Solves the problem. x, `columns` numbers up to 1e50: the start, and at the end the solution. Zeros are good. A start
    that is nearly right, and equal to the bounds it should be at, makes it faster; one with kkt > 1, or so far away that
    rounding hides a kkt of 1e-6, is replaced by zeros. `host`, `result` and `error` may be NULL. The work is in
    factorisations of a matrix with the pattern of A'A, so a row of A must not have very many entries. Most problems take
@@ -833,7 +835,8 @@ typedef struct gproj_mesh {
     const int32_t *polyline_vertex; /* a closed polyline ends with its first vertex */
 } gproj_mesh;
 
-/* Builds a mesh from at least one vertex: positions 3 * vertex_count, none beyond 1e70; face_degree one entry a face,
+/* Builds a mesh from at least one vertex: positions 3 * vertex_count, none beyond 1e70 (measures of meshes smaller than
+   about 1e-70 underflow: take a smaller unit); face_degree one entry a face,
    face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the element:
    indices out of range, faces with fewer than 3 or with repeated vertices, coordinates that are not finite, edges with
    more than two faces, vertices whose faces form more than one fan, components without a consistent orientation (a
@@ -911,8 +914,8 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
    >>api-edit   Changes of a mesh's combinatorics: edges split and collapsed, faces cut, strips of quads, the dual.
 
    The combinatorics of a gproj_mesh are fixed. A gproj_edit is a copy that can be changed, each change in time that
-   depends on the neighbourhood alone; gproj_edit_mesh turns the present state into a mesh, at any time and as often as
-   wanted, and gives the new number of each element:
+   depends on the neighbourhood alone (and on polylines, as long as they are); gproj_edit_mesh turns the present state
+   into a mesh, at any time and as often as wanted, and gives the new number of each element:
 
        gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
        int32_t v = gproj_edit_split_edge(edit, 17, 0.5, NULL);       // vertex v in the middle of edge 17
@@ -1140,14 +1143,16 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
-/* The closest point. Without a curve or a point: segment -1, infinite distance, zeros. */
+/* The closest point, for points up to 1e70 (beyond, distances are no numbers). Without a curve or a point: segment -1,
+   infinite distance, zeros. */
 GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const double point[3]);
 
 /* The mesh's faces, cut into triangles, which cover each face that does not cross itself (of up to 1365 corners; larger
    ones if no more than 2048 looks a corner are needed, so that work is linear). Refused if the mesh has no faces. */
 GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 GPROJ_API void gproj_surface_destroy(gproj_surface *surface);
-/* The closest point. Without a surface or a point: face -1, infinite distance, zeros. */
+/* The closest point, for points up to 1e70 (beyond, distances are no numbers). Without a surface or a point: face -1,
+   infinite distance, zeros. */
 GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, const double point[3]);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1160,7 +1165,7 @@ typedef struct gproj_measures {
     double planarity_max, planarity_mean;
     int32_t planarity_face; /* the face with planarity_max; -1 without faces */
     double circularity_max; /* for faces with more than 3 sides: largest difference between a face's vertices in
-                               distance from the circumcentre, in mean edge lengths */
+                               distance from the circumcentre, in mean edge lengths; infinite if there is none */
     double area_spread;     /* standard deviation of face areas over their mean */
     double diagonal_max;    /* quads: distance between the lines through the diagonals, in mean edge lengths */
     /* For vertices with 4 or more faces: the largest difference between the angles that the faces' normals make with
@@ -1211,7 +1216,7 @@ GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double di
    the normals n_k of the faces around the vertex. Exact for conical meshes: there x = a / cos(angle) with the vertex's
    axis a, and edges between two faces are parallel; for others in the least-squares sense. At the boundary, n_1'x =
    n_2'x = 1 from two faces or n'x = 1 from one leaves freedom, which makes boundary edges as parallel as possible.
-   Vertices without a face stay. */
+   Vertices without a face that has an area stay. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
 /* Makes the panels between a mesh and an offset of it: face e is the quad v_i v_j o_j o_i for edge e with half-edge 2e
@@ -1230,14 +1235,16 @@ typedef struct gproj_offset_measures {
     int32_t reversed_edges; /* they run against the mesh's edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
-/* All but reversed_edges is infinite if a mesh is NULL, or if the two do not have the same faces. */
+/* All but reversed_edges is infinite if a mesh is NULL, or if the two do not have the same faces; the least distances
+   are infinite and the largest none without a face. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
    >>api-fill   From a closed curve to a mesh of quads that fills it.
 
-   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges. Any
-   numbers can be filled that have an even sum of at least 4: a quad mesh has an even number of boundary edges. Inside,
+   The boundary of the mesh is the curve: its sides run from corner to corner, each cut into a number of edges, at most
+   16384 together, with an even sum of at least 4: a quad mesh has an even number of boundary edges. Where the shape
+   allows it any such numbers can be filled, but hundreds of edges beside a single one, where none is found. Inside,
    vertices have valence 4 but for a few with valence 3 and 5. The numbers decide: equal ones on opposite sides of 4
    give a grid, 3 and 5 sides with numbers that go together one irregular vertex, others a few more.
 
@@ -1252,7 +1259,7 @@ typedef struct gproj_fill_options {
     const int32_t *subdivisions; /* edges on side j, from corner j to the next, with equal lengths along the curve */
     double edge_length;          /* wanted, in the curve's units; 0: the mean distance of neighbouring points */
     bool keep_points;            /* the curve's points are the boundary vertices, whatever is wanted */
-    int32_t rings;               /* rows of quads around along the whole boundary */
+    int32_t rings;               /* rows of quads around along the whole boundary, at most 1024 */
     int32_t variant;             /* 0: the best pattern in each patch, by irregular vertices and by the width of its
                                     rows; 1, 2, ..: other patterns, while there are any */
 } gproj_fill_options;
@@ -1273,11 +1280,11 @@ typedef struct gproj_fill_info {
    the first corner. Corners of the mesh are exactly points of the curve, other boundary vertices are on the segments.
    Counter-clockwise curves give faces that look up. The polylines of the mesh are the sides; a curve with fewer than 2
    corners is given 4 at about equal distances, from its corner or its first point.
-   A corner has one face, or two if it has more than 165 degrees inside, if there are rings, or where only a pattern
-   within a ring fits the numbers (which happens with few edges). Cuts through the inside end at all corners with
-   more than 195 degrees, and at others if there are more than 6; cuts are chosen short, with good angles, and so
-   that the patches need few irregular vertices. Valence 6 is taken if this leaves nothing better, larger ones if
-   that does.
+   A corner has one face, or two if it has more than 165 degrees inside, if there are rings, if a cut ends there, or
+   where only a pattern within a ring fits the numbers (which happens with few edges). Cuts through the inside end at
+   all corners with more than 195 degrees, and at others if there are more than 6; cuts are chosen short, with good
+   angles, and so that the patches need few irregular vertices. Valence 6 is taken if this leaves nothing better,
+   larger ones if that does.
    `options`, `info`, `host` and `error` may be NULL; without a mesh `info` is all 0. Refused, naming the point (for
    a side: the first one): curves that meet themselves, corners out of order, numbers of edges below 1 or with an odd
    sum (the sentence says how to change them). Also refused: curves that enclose no area, or for which no filling was
@@ -6228,7 +6235,11 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
     for (k = 0; x->order && k < n; ++k) {
         j = given ? (options->permutation ? options->permutation[k] : -1) : k;
-        if (j < 0 || j >= n || x->mark[j] >= 0) return gproji_refuse(error, "the order given is no permutation");
+        if (given && !options->permutation) return gproji_refuse(error, "the order to keep is missing");
+        if (j < 0 || j >= n || x->mark[j] >= 0)
+            return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, k,
+                               "the order given is no permutation: entry %d is %d, %s", k, j,
+                               j < 0 || j >= n ? "which is no column" : "as an earlier one is");
         x->mark[j] = x->order[k] = j;
     }
     return GPROJ_OK;
@@ -6729,9 +6740,9 @@ GPROJI_INTERNAL double gproji_cholesky_residual(int32_t n, const int64_t *start,
             residual[row[p]] -= values[p] * x[j];
             if (row[p] != j) residual[j] -= values[p] * x[row[p]];
         }
-    for (j = 0; j < n; ++j)
+    for (j = 0; j < n && largest <= DBL_MAX; ++j)
         if (!(fabs(residual[j]) <= largest)) largest = fabs(residual[j]);
-    return largest;
+    return largest <= DBL_MAX ? largest : HUGE_VAL;
 }
 
 GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *start, const int32_t *row,
@@ -7501,13 +7512,14 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
     if (s.code == GPROJ_OK) gproji_squares_solve(&s, x);
     if (s.code == GPROJ_OK) {
         gproj_cholesky_info info = gproj_cholesky_get_info(s.normal.cholesky);
-        double sum = 0;
+        double sum = 0, largest = 0; /* which keeps squares from underflowing */
         gproji_squares_gradient(&s, s.best);
-        for (i = 0; i < problem->rows; ++i) sum += s.residual[i] * s.residual[i];
+        for (i = 0; i < problem->rows; ++i) largest = gproji_fmax(largest, fabs(s.residual[i]));
+        for (i = 0; largest > 0 && i < problem->rows; ++i) sum += s.residual[i] / largest * (s.residual[i] / largest);
         for (i = 0; i < s.columns; ++i) result->at_bounds += s.best[i] <= s.lower[i] || s.best[i] >= s.upper[i];
         result->outcome = gproji_squares_is_certain(&s) ? GPROJ_LEAST_SQUARES_SOLVED : GPROJ_LEAST_SQUARES_LIMIT;
         result->factorisations = s.normal.factorisations;
-        result->residual = sqrt(sum);
+        result->residual = largest * sqrt(sum);
         result->kkt = s.best_kkt;
         result->memory = s.heap.account;
         result->factor_bytes = info.factor_bytes;
@@ -12959,11 +12971,18 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
-/* Counts the corners of all faces, the entries of face_vertex. */
-GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t face_count, const int32_t *face_degree, int64_t *corners,
-                                                gproj_error *error) {
+/* Checks how many vertices and faces there are, and counts the corners of all faces, the entries of face_vertex. */
+GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t vertex_count, int32_t face_count, const int32_t *face_degree,
+                                                int64_t *corners, gproj_error *error) {
     int32_t f;
     *corners = 0;
+    if (vertex_count < 1)
+        return gproji_refuse(error, "a mesh of %d vertices; it needs at least one vertex", vertex_count);
+    if (face_count < 0) return gproji_refuse(error, "a mesh of %d faces", face_count);
+    if (vertex_count > GPROJI_VERTICES_MAX)
+        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                           "the mesh has %d vertices, more than %d; split it", vertex_count,
+                           (int32_t)GPROJI_VERTICES_MAX);
     for (f = 0; f < face_count; ++f) {
         if (face_degree[f] < 3)
             return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
@@ -12983,14 +13002,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    if (soup->vertex_count < 1 || soup->face_count < 0)
-        return gproji_refuse(error, "a mesh of %d vertices and %d faces; it needs at least one vertex",
-                             soup->vertex_count, soup->face_count);
-    if (soup->vertex_count > GPROJI_VERTICES_MAX)
-        return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                           "the mesh has %d vertices, more than %d; split it", soup->vertex_count,
-                           (int32_t)GPROJI_VERTICES_MAX);
-    code = gproji_count_corners(soup->face_count, soup->face_degree, &corners, error);
+    code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, &corners, error);
     if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
@@ -13056,7 +13068,7 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     gproji_heap heap = gproji_heap_of(host);
     gproji_pool pool;
     gproj_mesh *mesh = NULL;
-    double *position;
+    double *position = NULL;
     int32_t *degree, *vertex = NULL, f;
     int64_t corners = 0, k;
     size_t size = data && data->position ? sizeof(double) : sizeof(float), stride;
@@ -13076,13 +13088,14 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
         wrong = "either face_degree or degree is needed";
     if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
     if (wrong) return NULL;
-    /* 2. Room, for as many corners as the degrees sum up to; gproj_mesh_create refuses counts below 0. */
+    /* 2. Room, for as many corners as the degrees sum up to. */
     gproji_pool_start(&pool, &heap);
-    position = (double *)gproji_pool_take(&pool, gproji_max(0, data->vertex_count), 3 * sizeof *position);
     degree = gproji_take_ints(&pool, gproji_max(0, data->face_count));
     for (f = 0; degree && f < data->face_count; ++f)
         degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
-    code = degree ? gproji_count_corners(data->face_count, degree, &corners, error) : gproji_fail_memory(error);
+    code = degree ? gproji_count_corners(data->vertex_count, data->face_count, degree, &corners, error)
+                  : gproji_fail_memory(error);
+    if (!code) position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
     if (!code) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
     if (!code && !(position && vertex)) code = gproji_fail_memory(error);
     /* 3. The mesh. Strides may leave numbers at odd addresses: hence memcpy. */
@@ -15150,7 +15163,10 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
     gproj_curve *curve;
     gproji_error_clear(error);
     if (count < 2 || count > GPROJI_VERTICES_MAX || !points) {
-        gproji_refuse(error, points ? "a curve of %d points; it needs at least 2" : "the points of the curve are NULL",
+        gproji_refuse(error,
+                      !points     ? "the points of the curve are NULL"
+                      : count < 2 ? "a curve of %d points; it needs at least 2"
+                                  : "a curve of %d points; that is too many",
                       count);
         return NULL;
     }
@@ -15282,7 +15298,7 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
         polygon->prev[i] = i > 0 ? i - 1 : polygon->count - 1;
         extent = gproji_fmax(extent, gproji_dot3(d, d));
     }
-    polygon->tolerance = 1e-9 * extent;
+    polygon->tolerance = 1e-14 * extent; /* rounding */
 }
 
 /* True if corner b is an ear: it turns left and no other corner is in the triangle a b c; if any is, one is that does
@@ -16105,9 +16121,9 @@ typedef struct gproji_triangulation {
     int32_t *apex; /* ring_count^2: the third corner with which the triangle at i and j attains it */
 } gproji_triangulation;
 
-/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-6 to triangles turned over. */
+/* The cost 1 / x with x = 2 area / (a^2 + b^2 + c^2), continued by the tangent below 1e-12 to triangles turned over. */
 GPROJI_INTERNAL double gproji_triangle_cost(const gproji_polygon *polygon, int32_t a, int32_t b, int32_t c) {
-    const double least = 1e-6;
+    const double least = 1e-12;
     const double *p = polygon->xy + 2 * (size_t)a, *q = polygon->xy + 2 * (size_t)b, *r = polygon->xy + 2 * (size_t)c;
     double ux = q[0] - p[0], uy = q[1] - p[1], vx = r[0] - q[0], vy = r[1] - q[1], wx = p[0] - r[0], wy = p[1] - r[1];
     double squares = ux * ux + uy * uy + vx * vx + vy * vy + wx * wx + wy * wy;
@@ -17342,7 +17358,7 @@ GPROJI_INTERNAL bool gproji_face_field(gproji_pool *pool, const gproj_mesh *mesh
             if (mesh->face[h] >= 0) cosine += gproji_dot3(p.normal + 3 * (size_t)mesh->face[h], axis) / i;
             h = gproji_rotate(mesh, h);
         } while (h != start);
-        gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
+        if (cosine > 0) gproji_add_scaled3(1 / gproji_fmax(cosine, 0.01), axis, x + 3 * (size_t)v);
     }
     /* 2. Conjugate gradients, in each round until the slope is a small part of the first. */
     for (round = 0; round < 2 * GPROJI_PARALLEL_ROUNDS; ++round) {
@@ -17994,7 +18010,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
     }
     if (gproji_length3(f->normal) <= 1e-9 * extent || !gproji_normalise3(f->normal, gproji_zero))
         return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
-                           "the curve encloses no area; it must not run back along itself");
+                           "the curve encloses no area; it must not cross itself or run back along itself");
     gproji_tangents3(f->normal, f->across, f->up);
     for (i = 0; i < f->count; ++i) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);

@@ -437,7 +437,10 @@ GPROJT_TEST(cholesky_special_shapes) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
     gproj_cholesky_options amd = options_of(GPROJ_ORDERING_AMD);
     static const int64_t none[] = {0};
-    static const int64_t empty[] = {0, 0, 0, 0};
+    static const int64_t empty[] = {0, 0, 0, 0}, two[] = {0, 1, 2};
+    static const int32_t rows[] = {0, 1, 1};
+    static const double ones[] = {1, 1};
+    gproj_cholesky_options natural = options_of(GPROJ_ORDERING_GIVEN);
     double x[3] = {1, 2, 3};
     int32_t i, shape;
     gproj_cholesky_info info;
@@ -449,6 +452,18 @@ GPROJT_TEST(cholesky_special_shapes) {
     GPROJT_CHECK(gproj_cholesky_refine(c, none, NULL, NULL, NULL, NULL, 2) == HUGE_VAL);
     GPROJT_CHECK(gproj_cholesky_factor(c, NULL) == GPROJ_FACTORED);
     GPROJT_CHECK(gproj_cholesky_refine(c, none, NULL, NULL, NULL, NULL, 2) == 0);
+    /* what is no number is told, also before finite ones */
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 2, two, rows, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_cholesky_factor(c, ones) == GPROJ_FACTORED);
+    for (i = 0; i < 2; ++i) {
+        double b[2] = {1, 1}, y[2] = {1, 1};
+        y[i] = sqrt(-1.0);
+        GPROJT_CHECK(gproj_cholesky_refine(c, two, rows, ones, b, y, 0) == HUGE_VAL);
+    }
+    /* a wrong permutation is named */
+    natural.permutation = rows;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, &natural) == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "entry 2 is 1, as an earlier one is") != NULL);
     /* empty columns: zero matrix */
     GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_factor(c, NULL) == GPROJ_NOT_POSITIVE_DEFINITE);

@@ -1024,6 +1024,36 @@ GPROJT_TEST(every_other_ear_is_an_edge) {
     gproj_edit_destroy(e);
 }
 
+/* Faces squeezed to a strip, with few corners and with many: no triangle is turned over, however thin it is. */
+GPROJT_TEST(thin_faces) {
+    uint64_t state = 77;
+    int trial;
+    for (trial = 0; trial < 400; ++trial) {
+        int32_t n = trial % 4 == 3 ? 150 + gprojt_below(&state, 60) : 4 + gprojt_below(&state, 9), face[210], i;
+        double thin = pow(10, -(double)(trial % 9)), area[3];
+        gprojt_soup s;
+        gproj_mesh *mesh;
+        gproj_edit *e;
+        memset(&s, 0, sizeof s);
+        if (n > 100) thin = fmax(thin, 1e-4);
+        for (i = 0; i < n; ++i) { /* seen from the middle, corners come in order */
+            double u = 2 * acos(-1.0) * i / n, r = 0.2 + gprojt_uniform(&state);
+            face[i] = gprojt_add_vertex(&s, r * cos(u), thin * r * sin(u), 0);
+        }
+        gprojt_add_face(&s, n, face);
+        e = gprojt_edit_soup(s);
+        GPROJT_REQUIRE(e != NULL);
+        GPROJT_CHECK(gproj_edit_triangulate(e, -1, NULL) == n - 3);
+        mesh = gprojt_edit_mesh(e);
+        for (i = 0; mesh && i < mesh->face_count; ++i) {
+            gproj_mesh_face_area_vector(mesh, i, area);
+            GPROJT_CHECK(area[2] > -1e-15 * thin);
+        }
+        gproj_mesh_destroy(mesh);
+        gproj_edit_destroy(e);
+    }
+}
+
 /* Positions whose squares are beyond all numbers, though the area is not: triangles all the same. */
 GPROJT_TEST(triangles_of_the_largest_size) {
     double scale;
@@ -1456,6 +1486,7 @@ int main(void) {
     GPROJT_RUN(triangles_are_turned_least);
     GPROJT_RUN(diagonals_that_are_edges);
     GPROJT_RUN(every_other_ear_is_an_edge);
+    GPROJT_RUN(thin_faces);
     GPROJT_RUN(triangles_of_the_largest_size);
     GPROJT_RUN(dual_of_the_dual);
     GPROJT_RUN(the_dual_names_the_vertices_given);

@@ -1053,6 +1053,21 @@ static bool solve_from_near(const gproj_host *host, void *user) {
 }
 
 /* All memory is the host's. */
+/* A residual whose square is too small for a double. */
+GPROJT_TEST(tiny_residuals) {
+    static const int64_t start[2] = {0, 2};
+    static const int32_t row[2] = {0, 1};
+    static const double value[2] = {1, 1}, b[2] = {1e-170, -1e-170};
+    gproj_least_squares problem;
+    gproj_least_squares_result result;
+    double x = 0;
+    memset(&problem, 0, sizeof problem);
+    problem.rows = 2, problem.columns = 1, problem.start = start, problem.row = row, problem.value = value, problem.b = b;
+    GPROJT_CHECK(gproj_solve_least_squares(&problem, NULL, &x, &result, NULL) == GPROJ_OK);
+    GPROJT_CHECK(result.outcome == GPROJ_LEAST_SQUARES_SOLVED && x == 0);
+    GPROJT_NEAR(result.residual / 1e-170, sqrt(2.0), 1e-12);
+}
+
 GPROJT_TEST(memory_of_the_host) {
     uint64_t seed = 6;
     squares s = random_squares(2000, 2, 1, &seed); /* whose factor is nothing beside the rows */
@@ -1109,6 +1124,7 @@ int main(void) {
     GPROJT_RUN(deterministic);
     GPROJT_RUN(bad_arguments);
     GPROJT_RUN(bad_bounds);
+    GPROJT_RUN(tiny_residuals);
     GPROJT_RUN(memory_of_the_host);
     GPROJT_RUN(failing_allocations);
     return gprojt_report();

@@ -454,6 +454,10 @@ GPROJT_TEST(refused_layouts) {
     GPROJT_CHECK(mesh && mesh->face_count == 2 && mesh->edge_count == 5);
     gproj_mesh_destroy(mesh);
     gprojt_refused_data(NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "there are none");
+    data = good, data.vertex_count = 800000000; /* no array is read so far */
+    gprojt_refused_data(&data, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "800000000 vertices, more than");
+    data = good, data.face_count = -1;
+    gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "a mesh of -1 faces");
     data = good, data.float_position = NULL;
     gprojt_refused_data(&data, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "not both");
     data = good, data.position = exact;

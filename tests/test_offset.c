@@ -779,6 +779,24 @@ GPROJT_TEST(meshes_of_other_faces_are_no_offsets) {
     }
 }
 
+/* A vertex whose only face has no area stays where it is. */
+GPROJT_TEST(faces_without_area_stay) {
+    gprojt_soup s;
+    gproj_mesh *mesh, *offset;
+    int32_t v;
+    memset(&s, 0, sizeof s);
+    for (v = 0; v < 4; ++v) gprojt_add_vertex(&s, v == 1 || v == 2, v > 1, 0);
+    for (v = 0; v < 3; ++v) gprojt_add_vertex(&s, 5 + v, 0, 0); /* along a line */
+    gprojt_add_quad(&s, 0, 1, 2, 3);
+    gprojt_add_triangle(&s, 4, 5, 6);
+    mesh = gprojt_mesh_of(s);
+    offset = gproj_mesh_face_offset(mesh, 0.5, NULL, NULL);
+    GPROJT_REQUIRE(offset != NULL);
+    for (v = 0; v < 7; ++v) GPROJT_NEAR(offset->position[3 * v + 2], v < 4 ? 0.5 : 0, 1e-12);
+    gproj_mesh_destroy(offset);
+    gproj_mesh_destroy(mesh);
+}
+
 GPROJT_TEST(supports) {
     gproj_mesh *mesh = gprojt_noisy(HEXAGONS, 4, 0.05, 1), *offset = gproj_mesh_copy(mesh, NULL, NULL), *support;
     int32_t e, i;
@@ -877,6 +895,7 @@ int main(void) {
     GPROJT_RUN(offsets_are_measured);
     GPROJT_RUN(offsets_of_stray_vertices_are_not_measured);
     GPROJT_RUN(meshes_of_other_faces_are_no_offsets);
+    GPROJT_RUN(faces_without_area_stay);
     GPROJT_RUN(supports);
     GPROJT_RUN(refusals);
     GPROJT_RUN(every_allocation_fails_once);
