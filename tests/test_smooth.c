@@ -407,6 +407,74 @@ GPROJT_TEST(creeping_corners_ask_for_less) {
     GPROJT_CHECK(iterations <= 1825);
 }
 
+/* A square grid, whose faces grow from one side to the next by a factor, over a surface with shakes in proportion to them. */
+static gproj_mesh *gprojt_graded(int32_t n, double factor, double shake) {
+    gprojt_soup s = gprojt_quad_grid(n, n);
+    uint64_t state = 11;
+    double at[32] = {0}, whole;
+    int32_t i, j;
+    for (i = 0; i < n; ++i) at[i + 1] = at[i] + pow(factor, i);
+    whole = at[n];
+    for (j = 0; j <= n; ++j)
+        for (i = 0; i <= n; ++i) {
+            double *p = s.position + 3 * ((n + 1) * j + i), size = fmin(pow(factor, i), pow(factor, j));
+            p[0] = at[i], p[1] = at[j];
+            p[2] = 0.3 * whole * sin(1.5 * at[i] / whole) * cos(1.2 * at[j] / whole) +
+                   shake * size * (2 * gprojt_uniform(&state) - 1);
+        }
+    return gprojt_mesh_of(s);
+}
+
+/* Small faces beside large ones stay whole: differences of the change are relative along short edges, and long ones. Without
+   that 74 of these 96 end whole, in 5,400 iterations. */
+GPROJT_TEST(graded_meshes_stay_whole) {
+    static void (*const build[2])(gproj_form * form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_gliding};
+    int32_t n, iterations = 0;
+    int k, i, whole = 0, all = 0;
+    for (k = 0; k < 2; ++k)
+        for (n = 8; n <= 17; n += 3)
+            for (i = GPROJT_PATCHES_STEP - 1; i < 12; i += GPROJT_PATCHES_STEP) {
+                gproj_mesh *mesh = gprojt_graded(n, 1.15 + 0.15 * (i % 4), 0.1 + 0.15 * (i / 4));
+                gproj_form *form = gproj_form_create(mesh, NULL);
+                gproj_solve_options options = gprojt_smooth();
+                gproj_result result;
+                build[k](form, NULL);
+                result = gproj_solve(form, 200, &options);
+                ++all, iterations += result.iterations;
+                whole += result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0;
+                gproj_form_destroy(form);
+                gproj_mesh_destroy(mesh);
+            }
+    if (whole * 96 < 84 * all) printf("  %d of %d whole, %d iterations\n", whole, all, (int)iterations);
+    GPROJT_CHECK(whole * 96 >= 84 * all && iterations * 96 <= 4000 * all);
+}
+
+/* A large face that is bent much has a normal in the end: n = 0 satisfies all of the equations but one. */
+GPROJT_TEST(large_bent_faces) {
+    int32_t way, i, face[1000];
+    for (way = 0; way < 3; ++way) {
+        gproj_solve_options options = gprojt_smooth();
+        gprojt_soup s;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < 1000; ++i) {
+            double u = acos(-1.0) * i / 500;
+            face[i] = gprojt_add_vertex(&s, cos(u), sin(u), 0.1 * sin(3 * u + 0.3));
+        }
+        gprojt_add_face(&s, 1000, face);
+        mesh = gprojt_mesh_of(s);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        options.smooth = way == 1, options.nearest = way == 2;
+        result = gproj_solve(form, way == 2 ? 60 : 20, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* How far the residual has fallen is told over 6 iterations: one is often a bad one. Corners ask for less near the end only. */
 GPROJT_TEST(creeping_takes_iterations) {
     gproj_solve_options options = gprojt_smooth();
@@ -1354,6 +1422,8 @@ int main(void) {
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
     GPROJT_RUN(creeping_corners_ask_for_less);
+    GPROJT_RUN(graded_meshes_stay_whole);
+    GPROJT_RUN(large_bent_faces);
     GPROJT_RUN(creeping_takes_iterations);
     GPROJT_RUN(bowls_stand_nearby);
     GPROJT_RUN(closeness_that_is_skipped_stays_out);
