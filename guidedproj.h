@@ -1525,12 +1525,12 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
    options->smooth (the command line's default) does more for meshes of any resolution:
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
-     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). Along edges below half
-     of the mean edge length, or above twice as much, the difference is divided by that ratio^0.7: small faces beside
-     large ones count. This takes the smoothest change that satisfies the linearised rows: meshes stay fair that way,
-     and move farther for it. If nothing is wished the way from the beginning of the solve is measured like that, as
-     long as steps go well, so that it ends near the smoothest change of all. No closeness is added. Forces are
-     measured, too, if steps fail.
+     |dx|, as long as that helps (Levenberg and Marquardt's method in that norm; see >>loop). With planar faces, along
+     edges below half of the mean edge length or above twice as much, the difference is divided by that ratio^0.7:
+     small faces beside large ones count. This takes the smoothest change that satisfies the linearised rows: meshes
+     stay fair that way, and move farther for it. If nothing is wished the way from the beginning of the solve is
+     measured like that, as long as steps go well, so that it ends near the smoothest change of all. No closeness is
+     added. Forces are measured, too, if steps fail.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
@@ -23676,15 +23676,17 @@ static const gproji_rule gproji_force_change_rule = {"force change",   GPROJ_WIS
                                                      GPROJI_OWN_BRAKE, GPROJI_BRAKE, NULL};
 
 /* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges.
-   Those along edges shorter than half of the mean edge or longer than twice as much are relative to the length, or
-   nearly so: moves that are small for large faces would bend small ones and turn them over. Of 240 solves of graded
-   grids, whose faces grow 3 to 1,800 times as wide, 231 end whole so, 213 without it, in 0.6 of the iterations.
-   Relative differences along all edges do as well there, but less well for small patches whose edges are even. */
+   With planar faces those along edges shorter than half of the mean edge or longer than twice as much are relative to
+   the length, or nearly so: moves that are small for large faces would bend small ones and turn them over. Of 240
+   solves of graded grids, whose faces grow 3 to 1,800 times as wide, 231 end whole so, 213 without it, in 0.6 of the
+   iterations. Relative differences along all edges do as well there, but less well for small patches whose edges are
+   even; and in equilibrium without planar faces small ones would fold that do not otherwise. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1}, difference[2] = {{0, -1, 1}, {1, -1, -1}};
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t group = gproji_new_group(form, &gproji_smooth_change_rule, 0), e, i, k, *local;
+    double power = gproji_is_on(form, form->planarity) ? gproji_metric_relative : 0;
     if (group < 0) return;
     for (i = 0; i < 3 * mesh->vertex_count; ++i) {
         local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
@@ -23694,7 +23696,7 @@ GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     }
     for (e = 0; e < mesh->edge_count && gproji_form_ready(form); ++e) {
         double length = gproji_edge_length(mesh, form->original, e), even = gproji_fmin(gproji_fmax(length, 0.5), 2);
-        double weight = pow(even / gproji_fmin(gproji_fmax(length, 0.005), 200), gproji_metric_relative);
+        double weight = pow(even / gproji_fmin(gproji_fmax(length, 0.005), 200), power);
         local = gproji_add_placed_rows(s, group, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
         for (k = 0; k < 3 && local; ++k, local += 2) {
             local[0] = 3 * mesh->origin[2 * e] + k;
