@@ -15,6 +15,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "utf8.h"
+
 typedef struct gprojx_json {
     FILE *file;
     int depth;
@@ -64,20 +66,6 @@ static void gprojx_json_number(gprojx_json *j, const char *key, double value) {
 static void gprojx_json_integer(gprojx_json *j, const char *key, int64_t value) {
     gprojx_json_next(j, key);
     fprintf(j->file, "%lld", (long long)value);
-}
-
-/* The bytes of the UTF-8 character that begins here (Unicode 3.9, without the finer bounds); 0: it is none. */
-static size_t gprojx_utf8_size(const char *text) {
-    unsigned char c = (unsigned char)text[0];
-    size_t size = c < 0x80                ? 1
-                  : c >= 0xc2 && c < 0xe0 ? 2
-                  : c >= 0xe0 && c < 0xf0 ? 3
-                  : c >= 0xf0 && c < 0xf5 ? 4
-                                          : 0,
-           k;
-    for (k = 1; k < size; ++k)
-        if (((unsigned char)text[k] & 0xc0) != 0x80) return 0;
-    return size;
 }
 
 /* Writes a string; bytes that are not UTF-8 (a path may hold any) become question marks. */

@@ -22,7 +22,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "json.h" /* for gprojx_utf8_size */
+#include "utf8.h"
 
 /* Where the eye stands, in degrees: azimuth from the x axis towards the y axis, elevation above the xy plane. */
 typedef struct gprojx_view {
