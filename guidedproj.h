@@ -513,7 +513,7 @@ typedef struct gproj_least_squares {
     int32_t rows, columns;
     const int64_t *start; /* columns + 1: column j has the entries start[j]..start[j+1]-1; start[0] = 0 */
     const int32_t *row;   /* of each entry, in any order; entries at the same place are summed, in order */
-    const double *value;  /* of each entry, |value| <= 1e50; refused if all squares, or products with b, underflow */
+    const double *value;  /* of each entry, |value| <= 1e50; if all squares, or products with b, underflow: LIMIT */
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
@@ -616,8 +616,8 @@ typedef struct gproj_progress {
        ever. */
     int32_t unguided;
     bool tangential; /* nearest: steps follow the constraints away from the start, and may be long */
-    bool trial;      /* x is the end of a step that may still be taken back: the rows are to fit it, but what a
-                           refresh keeps from call to call should depend on accepted steps only */
+    bool trial;      /* x is the end of a step that may still be taken back: the rows are to fit it, but what a refresh
+                        keeps from call to call should depend on accepted steps only */
 } gproj_progress;
 
 /* Called before each iteration for groups whose rows are not quadratic in x (closest points, tangent frames): reads x
@@ -837,11 +837,11 @@ typedef struct gproj_mesh {
 } gproj_mesh;
 
 /* Builds a mesh from at least one vertex: positions 3 * vertex_count, none beyond 1e70 (measures of meshes smaller than
-   about 1e-70 underflow: take a smaller unit); face_degree one entry a face,
-   face_vertex the corners of all faces one after the other, from 0. The arrays are copied. Refuses, naming the element:
-   indices out of range, faces with fewer than 3 or with repeated vertices, coordinates that are not finite, edges with
-   more than two faces, vertices whose faces form more than one fan, components without a consistent orientation (a
-   component's first face gives it; faces against it are turned round and counted). */
+   about 1e-70 underflow: take a smaller unit); face_degree one entry a face, face_vertex the corners of all faces one
+   after the other, from 0. The arrays are copied. Refuses, naming the element: indices out of range, faces with fewer
+   than 3 or with repeated vertices, coordinates that are not finite, edges with more than two faces, vertices whose
+   faces form more than one fan, components without a consistent orientation (a component's first face gives it; faces
+   against it are turned round and counted). */
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
                                         const int32_t *face_degree, const int32_t *face_vertex, const gproj_host *host,
                                         gproj_error *error);
@@ -1507,16 +1507,16 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    back however the solve ends, but for an error (GPROJ_FAILED) and steps farther than vertices may be, which leave the
    mesh as it was (in frames: as the last good one left it). At the beginning all unknowns of the library and of
    gproj_form_add_unknowns get start values for these positions; variables of gproj_system_add_variables, and the forces
-   of an earlier solve, keep theirs. "The original" for
-   fixed vertices, gliding boundaries and gproj_add_closeness is always the mesh at gproj_form_create. If no wish
-   guides, closeness to the positions at the beginning of this solve is added, with the weight 0.03 * 0.3^n up to
-   iteration 5, or half of the iterations if that is less (options: skip_closeness).
+   of an earlier solve, keep theirs. "The original" for fixed vertices, gliding boundaries and gproj_add_closeness is
+   always the mesh at gproj_form_create. If no wish guides, closeness to the positions at the beginning of this solve is
+   added, with the weight 0.03 * 0.3^n up to iteration 5, or half of the iterations if that is less (options:
+   skip_closeness).
 
    Steps are found by the constraints' multipliers where these are clearly fewer than the variables: with constraints
-   such as planarity and equilibrium, and wishes for single vertices such as closeness. With fairness,
-   circular or conical faces they are not, and options->nearest and drags always need the matrix of all variables; the
-   first of these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the
-   constraints are met, on paths that differ a little.
+   such as planarity and equilibrium, and wishes for single vertices such as closeness. With fairness, circular or
+   conical faces they are not, and options->nearest and drags always need the matrix of all variables; the first of
+   these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the constraints are
+   met, on paths that differ a little.
 
    With planar faces, or forces that carry, there is a guard as well (options: skip_guard): while the wishes guide and
    two iterations longer, at least four, a face that is about to turn over gets a row that asks for 0.4 of its area. The
@@ -22529,8 +22529,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
    creep all the same, each row asks for its floor only; far from the end that would be too early, for shapes lose more
    there than they must. If no step is found even so, the rows ask for the least (no face turned over, nor so concave
-   that its sides cross), and then they are let go. Of the 36 twisted patches in test_smooth
-   35 end whole so, 24 with GPROJI_SAFE_LAST = 0, and 20 with gproji_dihedral_least = -2.
+   that its sides cross), and then they are let go. Of the 36 twisted patches in test_smooth 35 end whole so, 24 with
+   GPROJI_SAFE_LAST = 0, and 20 with gproji_dihedral_least = -2.
 
    Few come near to their bounds, so rows are added for those that a step would violate, and for those that are near to
    it, more of them each time: every time the rows are compiled anew. They stay, without weight, for the next solve; a
@@ -23001,13 +23001,10 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
             size_t v = 3 * (size_t)part->element[i], c;
+            bool corner = !gproji_curve_at(part, i);
             if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
-            if (!gproji_curve_at(part, i)) gproji_copy3(form->original + v, value + v);
-            for (c = v; c < v + 3; ++c)
-                if (!gproji_curve_at(part, i))
-                    held[c] = 1;
-                else if (held[c] == 0)
-                    held[c] = -1;
+            if (corner) gproji_copy3(form->original + v, value + v);
+            for (c = v; c < v + 3; ++c) held[c] = corner ? 1 : held[c] == 0 ? -1 : held[c];
         }
     }
     for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
@@ -23675,47 +23672,43 @@ static const gproji_rule gproji_smooth_change_rule = {"smooth change",   GPROJ_W
 static const gproji_rule gproji_force_change_rule = {"force change",   GPROJ_WISH,   GPROJ_PLACE_NONE,
                                                      GPROJI_OWN_BRAKE, GPROJI_BRAKE, NULL};
 
-/* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges.
-   With planar faces those along edges shorter than half of the mean edge or longer than twice as much are relative to
-   the length, or nearly so: moves that are small for large faces would bend small ones and turn them over. Of 240
-   solves of graded grids, whose faces grow 3 to 1,800 times as wide, 231 end whole so, 213 without it, in 0.6 of the
-   iterations. Relative differences along all edges do as well there, but less well for small patches whose edges are
-   even; and in equilibrium without planar faces small ones would fold that do not otherwise. */
+/* The group that measures steps, once: a little of the displacement of each vertex, and its differences along edges. */
 GPROJI_INTERNAL void gproji_add_metric(gproj_form *form) {
     static const gproj_term one = {0, -1, 1}, difference[2] = {{0, -1, 1}, {1, -1, -1}};
     const gproj_mesh *mesh = form->mesh;
     gproj_system *s = form->system;
     int32_t group = gproji_new_group(form, &gproji_smooth_change_rule, 0), e, i, k, *local;
-    double power = gproji_is_on(form, form->planarity) ? gproji_metric_relative : 0;
     if (group < 0) return;
     for (i = 0; i < 3 * mesh->vertex_count; ++i) {
         local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
         if (!local) return;
         *local = i;
-        gproji_set_row(s, group, i, gproji_metric_near, 0);
     }
     for (e = 0; e < mesh->edge_count && gproji_form_ready(form); ++e) {
-        double length = gproji_edge_length(mesh, form->original, e), even = gproji_fmin(gproji_fmax(length, 0.5), 2);
-        double weight = pow(even / gproji_fmin(gproji_fmax(length, 0.005), 200), power);
         local = gproji_add_placed_rows(s, group, 3 * mesh->vertex_count, 3, 2, difference, 2, 0, -1);
         for (k = 0; k < 3 && local; ++k, local += 2) {
             local[0] = 3 * mesh->origin[2 * e] + k;
             local[1] = 3 * mesh->origin[2 * e + 1] + k;
-            gproji_set_row(s, group, i++, weight, 0);
         }
     }
 }
 
-/* Lets the metric's rows be 0 where the vertices are now. */
-GPROJI_INTERNAL void gproji_anchor_metric(gproj_form *form, int32_t group) {
+/* Weighs the metric's rows for a solve, and lets them be 0 where the vertices are now. With planar faces differences
+   along edges shorter than half of the mean edge or longer than twice as much are relative to the length, or nearly so:
+   moves that are small for large faces would bend small ones and turn them over (graded_meshes_stay_whole in
+   test_smooth). Relative differences along all edges do as well there, but less well for small patches whose edges are
+   even; and in equilibrium without planar faces small ones would fold that do not otherwise. */
+GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, int32_t group) {
+    const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
-    const gproji_group *g = gproji_group_at(form->system, group);
-    int32_t count = 3 * form->mesh->vertex_count, r;
-    for (r = 0; r < g->row_count; ++r) {
-        int32_t e = (r - count) / 3, k = (r - count) % 3;
-        double from =
-            r < count ? x[r] : x[3 * form->mesh->origin[2 * e] + k] - x[3 * form->mesh->origin[2 * e + 1] + k];
-        gproji_set_row(form->system, group, r, g->row[r].weight, -from);
+    double power = gproji_is_on(form, form->planarity) ? gproji_metric_relative : 0;
+    int32_t row = 3 * mesh->vertex_count, r, e, k;
+    for (r = 0; r < row; ++r) gproji_set_row(form->system, group, r, gproji_metric_near, -x[r]);
+    for (e = 0; e < mesh->edge_count; ++e) {
+        const double *from = x + 3 * (size_t)mesh->origin[2 * e], *to = x + 3 * (size_t)mesh->origin[2 * e + 1];
+        double length = gproji_edge_length(mesh, form->original, e), even = gproji_fmin(gproji_fmax(length, 0.5), 2);
+        double weight = pow(even / gproji_fmin(gproji_fmax(length, 0.005), 200), power);
+        for (k = 0; k < 3; ++k) gproji_set_row(form->system, group, row++, weight, to[k] - from[k]);
     }
 }
 
@@ -23852,7 +23845,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_form_ready(form)) goto failed;
     part = gproji_own_part(form, GPROJI_OWN_METRIC);
     anchored = metric && beginning->stiffness <= 1 && !gproji_has_active_wish(form);
-    if (anchored) gproji_anchor_metric(form, part->group);
+    if (metric) gproji_set_metric(form, part->group);
     if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
     part = gproji_own_part(form, GPROJI_OWN_BRAKE);
     if (part)
@@ -23926,8 +23919,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         result->outcome = GPROJ_STALLED;
         gproji_format(result->message, sizeof result->message,
                       "the steps have led beyond coordinates of 1e70 or 1e20 mean edge lengths, so the mesh is left "
-                      "where it was: "
-                      "ask for less, or fix vertices");
+                      "where it was: ask for less, or fix vertices");
         return *result;
     }
     gproji_store_positions(form, form->before);

@@ -440,7 +440,7 @@ GPROJT_TEST(cholesky_special_shapes) {
     static const int64_t empty[] = {0, 0, 0, 0}, two[] = {0, 1, 2};
     static const int32_t rows[] = {0, 1, 1};
     static const double ones[] = {1, 1};
-    gproj_cholesky_options natural = options_of(GPROJ_ORDERING_GIVEN);
+    gproj_cholesky_options given = options_of(GPROJ_ORDERING_GIVEN);
     double x[3] = {1, 2, 3};
     int32_t i, shape;
     gproj_cholesky_info info;
@@ -461,8 +461,8 @@ GPROJT_TEST(cholesky_special_shapes) {
         GPROJT_CHECK(gproj_cholesky_refine(c, two, rows, ones, b, y, 0) == HUGE_VAL);
     }
     /* a wrong permutation is named */
-    natural.permutation = rows;
-    GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, &natural) == GPROJ_ERROR_ARGUMENT);
+    given.permutation = rows;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, &given) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "entry 2 is 1, as an earlier one is") != NULL);
     /* empty columns: zero matrix */
     GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, NULL) == GPROJ_OK);

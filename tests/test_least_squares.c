@@ -1052,7 +1052,6 @@ static bool solve_from_near(const gproj_host *host, void *user) {
     return code == GPROJ_OK;
 }
 
-/* All memory is the host's. */
 /* A residual whose square is too small for a double. */
 GPROJT_TEST(tiny_residuals) {
     static const int64_t start[2] = {0, 2};
@@ -1068,6 +1067,7 @@ GPROJT_TEST(tiny_residuals) {
     GPROJT_NEAR(result.residual / 1e-170, sqrt(2.0), 1e-12);
 }
 
+/* All memory is the host's. */
 GPROJT_TEST(memory_of_the_host) {
     uint64_t seed = 6;
     squares s = random_squares(2000, 2, 1, &seed); /* whose factor is nothing beside the rows */

@@ -325,6 +325,24 @@ GPROJT_TEST(right_angles_are_let_go) {
     GPROJT_CHECK(iterations[0] == iterations[1] && iterations[0] < iterations[2]);
 }
 
+/* A square grid, whose faces grow from one side to the next by a factor, over a surface with shakes in proportion to them. */
+static gproj_mesh *gprojt_graded(int32_t n, double factor, double shake) {
+    gprojt_soup s = gprojt_quad_grid(n, n);
+    uint64_t state = 11;
+    double at[32] = {0}, whole;
+    int32_t i, j;
+    for (i = 0; i < n; ++i) at[i + 1] = at[i] + pow(factor, i);
+    whole = at[n];
+    for (j = 0; j <= n; ++j)
+        for (i = 0; i <= n; ++i) {
+            double *p = s.position + 3 * ((n + 1) * j + i), size = fmin(pow(factor, i), pow(factor, j));
+            p[0] = at[i], p[1] = at[j];
+            p[2] = 0.3 * whole * sin(1.5 * at[i] / whole) * cos(1.2 * at[j] / whole) +
+                   shake * size * (2 * gprojt_uniform(&state) - 1);
+        }
+    return gprojt_mesh_of(s);
+}
+
 /* A solve before anything was added is as if it had not been. */
 GPROJT_TEST(nothing_to_solve_before) {
     gproj_solve_options options = gprojt_smooth();
@@ -333,7 +351,7 @@ GPROJT_TEST(nothing_to_solve_before) {
     int32_t i;
     for (i = 0; i < 2; ++i) {
         gproj_form *form;
-        mesh[i] = gprojt_twisted(6, 0.2);
+        mesh[i] = gprojt_graded(8, 1.5, 0.2); /* measured in another way with planar faces */
         form = gproj_form_create(mesh[i], NULL);
         if (i == 1) GPROJT_CHECK(gproj_solve(form, 10, &options).outcome == GPROJ_CONVERGED);
         gprojt_add_planar(form, NULL);
@@ -395,7 +413,7 @@ GPROJT_TEST(patches_stay_whole) {
 }
 
 /* Where the constraints creep because many corners must shrink, these ask for less: 24 patches with a fixed boundary take
-   some 1,700 iterations together, and 1,900 to 2,200 where corners go on asking. */
+   some 1,500 iterations together, and 1,900 where corners go on asking. */
 GPROJT_TEST(creeping_corners_ask_for_less) {
     int32_t size, i, iterations = 0;
     for (size = 5; size <= 6; ++size)
@@ -407,26 +425,8 @@ GPROJT_TEST(creeping_corners_ask_for_less) {
     GPROJT_CHECK(iterations <= 1825);
 }
 
-/* A square grid, whose faces grow from one side to the next by a factor, over a surface with shakes in proportion to them. */
-static gproj_mesh *gprojt_graded(int32_t n, double factor, double shake) {
-    gprojt_soup s = gprojt_quad_grid(n, n);
-    uint64_t state = 11;
-    double at[32] = {0}, whole;
-    int32_t i, j;
-    for (i = 0; i < n; ++i) at[i + 1] = at[i] + pow(factor, i);
-    whole = at[n];
-    for (j = 0; j <= n; ++j)
-        for (i = 0; i <= n; ++i) {
-            double *p = s.position + 3 * ((n + 1) * j + i), size = fmin(pow(factor, i), pow(factor, j));
-            p[0] = at[i], p[1] = at[j];
-            p[2] = 0.3 * whole * sin(1.5 * at[i] / whole) * cos(1.2 * at[j] / whole) +
-                   shake * size * (2 * gprojt_uniform(&state) - 1);
-        }
-    return gprojt_mesh_of(s);
-}
-
 /* Small faces beside large ones stay whole: differences of the change are relative along short edges, and long ones. Without
-   that 74 of these 96 end whole, in 5,400 iterations. */
+   that 76 of these 96 end whole, in 5,200 iterations instead of 2,700. */
 GPROJT_TEST(graded_meshes_stay_whole) {
     static void (*const build[2])(gproj_form * form, void *user) = {gprojt_add_planar_fixed, gprojt_add_planar_gliding};
     int32_t n, iterations = 0;

@@ -544,6 +544,12 @@ expect 3 "was written with --fairness 0.1; only" grid.obj -o new.obj --planar --
 head -c 200 work.state >cut.state
 expect 3 "state" grid.obj -o new.obj --planar --fairness 0.1 --state cut.state
 [ "$(wc -c <cut.state)" -eq 200 ] && pass || fail "a refused state was written over"
+for size in 20 40 50 60 61 62 63 64 65 66 67 68 69 70 71 72 80; do # in the list of what was asked for, and just behind it
+    head -c $size work.state >cut.state
+    run grid.obj -o new.obj --planar --fairness 0.1 --state cut.state
+    [ $status -eq 3 ] && grep -q 'cut.state' err.txt || fail "a state of $size bytes exits with $status: $(head -n 1 err.txt)"
+done
+[ -e new.obj ] && fail "a cut state leaves a mesh" || pass
 expect 2 "would overwrite" grid.obj -o new.obj --planar --state grid.obj
 
 # In parts by iterations, too; then what is asked for is what was: other bounds, options or files are refused.

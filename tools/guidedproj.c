@@ -2015,7 +2015,8 @@ static bool check_needs(tool *t) {
     int i;
     for (i = 0; i < OPTION_COUNT; ++i) {
         t->line = t->line_of[i];
-        if (t->seen[i] && options[i].needs && !is_given(t, options[i].needs->place))
+        if (t->seen[i] && options[i].needs &&
+            (!is_given(t, options[i].needs->place) || (options[i].needs == &normals && !(t->planar.weight > 0))))
             return fail(t, EXIT_USAGE, "--%s %s", options[i].name, options[i].needs->why);
     }
     t->line = 0;
@@ -2125,9 +2126,6 @@ static bool check_options(tool *t) {
         return fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
-    for (i = 0; i < OPTION_COUNT; ++i)
-        if (t->seen[i] && options[i].needs == &normals && t->own[i].weight > 0 && !(t->planar.weight > 0))
-            return fail(t, EXIT_USAGE, "--%s %s", options[i].name, normals.why);
     if (t->circular.weight > 0 && !(t->planar.weight > 0))
         return fail(t, EXIT_USAGE, "--circular is for planar faces, others would only be on spheres: add --planar");
     if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
@@ -2503,7 +2501,7 @@ static bool drag_to(tool *t, const gproj_handles *handles, const double *positio
 }
 
 /* Is there a --move with a weight? */
-static bool pulls_at_all(const tool *t) {
+static bool moves_anything(const tool *t) {
     int32_t i = 0;
     while (i < t->move_count && !(t->move[i].weight > 0)) ++i;
     return i < t->move_count;
@@ -2567,7 +2565,6 @@ static void write_number(FILE *file, double value, char after) {
 }
 
 /* A verdict as text, for a state whose solve has ended: numbers, the sentence and a NUL. The seconds are not kept. */
-
 enum {
     VERDICT_NUMBERS = 18
 };
@@ -2613,6 +2610,7 @@ static size_t read_verdict(const char *text, size_t room, gproj_result *r) {
         if (!real && !(fabs(number[i]) <= INT32_MAX)) return 0;
         if (real && number[i] < 0) number[i] = HUGE_VAL;
     }
+    if (number[0] < GPROJ_CONVERGED || number[0] > GPROJ_FAILED) return 0;
     r->outcome = (gproj_outcome)number[0];
     r->iterations = (int32_t)number[1], r->damped = (int32_t)number[2], r->attempts = (int32_t)number[3];
     r->residual = number[4], r->tolerance = number[5], r->step = number[6], r->optimality = number[7];
@@ -2650,9 +2648,9 @@ static bool restore(tool *t) {
              "it to begin anew",
              path, words);
     else {
-        size_t length = read_verdict((const char *)bytes + start, size - start, &t->result);
+        size_t length = start < size ? read_verdict((const char *)bytes + start, size - start, &t->result) : 0;
         t->ended = length > 0;
-        if (length == 0) length = 1; /* a NUL only */
+        if (length == 0 && start < size) length = 1; /* a NUL only */
         if (gproj_state_restore(t->form, bytes + start + length, size - start - length, &error) != GPROJ_OK)
             fail_library(t, path, &error);
     }
@@ -2704,7 +2702,7 @@ static bool prepare_records(tool *t) {
 }
 
 static bool solve(tool *t) {
-    bool dragged = pulls_at_all(t) && !t->equilibrium.given && !t->plain;
+    bool dragged = moves_anything(t) && !t->equilibrium.given && !t->plain;
     bool unguided = (t->closeness.given && t->closeness.weight <= 0) || (dragged && !t->nearest);
     const gproj_solve_options how = {.tolerance = t->tolerance,
                                      .epsilon = t->epsilon,
