@@ -689,8 +689,9 @@ typedef struct gproj_iteration {
     double seconds[GPROJ_PHASE_COUNT]; /* of this iteration */
 } gproj_iteration;
 
-/* Called after each iteration; groups may be read (gproj_system_group_info) and weights changed. Return false to
-   stop with GPROJ_CANCELLED; x then stays as it is after this iteration. */
+/* Called after each iteration; groups may be read (gproj_system_group_info) and weights changed: the attempt in which
+   they are changed is the last of gproj_solve. Return false to stop with GPROJ_CANCELLED; x then stays as it is after
+   this iteration. */
 typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj_iteration *iteration);
 
 typedef struct gproj_solve_options {
@@ -10587,6 +10588,12 @@ typedef struct gproji_trust {
     int32_t wary;     /* iterations in which the stiffness does not fall fast */
 } gproji_trust;
 
+/* nearest: how slides have turned out. */
+typedef struct gproji_slides {
+    double shift; /* of the last one with curvature, times s^2 */
+    bool minimum; /* the last one had all curvature and a positive definite matrix without a shift */
+} gproji_slides;
+
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
@@ -10611,8 +10618,8 @@ typedef struct gproji_loop {
     gproji_watch watch;
     bool stiff; /* metric groups have a weight in this solve */
     gproji_trust trust;
-    double shift; /* nearest: of the last slide with curvature, times s^2 */
-    bool minimum; /* nearest: the last slide had all curvature and a positive definite matrix without a shift */
+    gproji_slides slides;
+    bool steered; /* the callback has changed what is asked for */
     bool hopeful; /* the verdict: more iterations may help, unless a reason against it is found */
 } gproji_loop;
 
@@ -11386,7 +11393,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
 
 /* Books iteration n and calls the caller's function, for which no phase is charged. False: stop. */
 GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
-    bool go_on = true;
+    bool go_on = true, changed = loop->system->changed;
     loop->iteration.number = loop->earlier + n;
     loop->iteration.residual = loop->standing.residual;
     loop->iteration.merit = loop->standing.merit;
@@ -11394,8 +11401,12 @@ GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
     loop->result.iterations = n;
     loop->result.damped += loop->iteration.factorisations > 1 || loop->iteration.length < 1;
     loop->result.step = loop->iteration.step;
-    if (loop->options.on_iteration)
+    if (loop->options.on_iteration) {
+        loop->system->changed = false;
         go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
+        loop->steered = loop->steered || loop->system->changed;
+        loop->system->changed = loop->system->changed || changed;
+    }
     loop->time.lap = gproji_now(loop->system);
     return go_on;
 }
@@ -11959,8 +11970,8 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     gproj_system *s = loop->system;
     bool curved = loop->iteration.optimality < gproji_nearest_curved;
     bool flat = loop->iteration.optimality <= gproji_nearest_optimal && gproji_holds(loop);
-    bool anew = flat && loop->shift > gproji_nearest_flat, calm;
-    double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->shift;
+    bool anew = flat && loop->slides.shift > gproji_nearest_flat, calm;
+    double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->slides.shift;
     int32_t i, r;
     gproji_pass_over(s, 0, gproji_save_task);
     /* Rows that depend on each other let multipliers grow without need, which may hide a minimum: these begin anew. */
@@ -11970,11 +11981,11 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     for (loop->iteration.factorisations = 0; loop->iteration.factorisations < GPROJI_CURVED_TRIALS + 4;) {
         if (gproji_find_bounded_slide(loop, curved, shift, false) &&
             gproji_take_slide(loop, curved ? 3 : GPROJI_NEAREST_HALVES, false)) {
-            loop->minimum = curved && !anew && shift <= gproji_nearest_flat;
+            loop->slides.minimum = curved && !anew && shift <= gproji_nearest_flat;
             if (curved) { /* the first shift to try next time */
-                loop->shift = shift;
-                if (loop->iteration.length == 1) loop->shift = shift < gproji_nearest_flat ? 0 : shift / 3;
-                if (loop->iteration.length < 0.5) loop->shift = 1.5 * shift;
+                loop->slides.shift = shift;
+                if (loop->iteration.length == 1) loop->slides.shift = shift < gproji_nearest_flat ? 0 : shift / 3;
+                if (loop->iteration.length < 0.5) loop->slides.shift = 1.5 * shift;
             }
             gproji_lap(loop, GPROJ_PHASE_SOLVE);
             return true;
@@ -11983,12 +11994,12 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
         if (curved && loop->iteration.factorisations == GPROJI_CURVED_TRIALS) {
-            if (flat) loop->shift = shift; /* multipliers begin anew in the next slide */
+            if (flat) loop->slides.shift = shift; /* multipliers begin anew in the next slide */
             curved = false;
             shift = 0;
         }
     }
-    loop->minimum = false;
+    loop->slides.minimum = false;
     calm = gproji_find_bounded_slide(loop, false, 0, true) && gproji_take_slide(loop, GPROJI_CALM_HALVES, true);
     gproji_lap(loop, GPROJ_PHASE_SOLVE);
     if (!calm) gproji_evaluate(s);
@@ -12039,7 +12050,7 @@ GPROJI_INTERNAL void gproji_see_nearest(gproji_loop *loop) {
    little curvature that slides from one stationary point to the next do not lower the energy. */
 GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
     double optimality = loop->iteration.optimality;
-    bool shown = loop->minimum || loop->waited >= GPROJI_NEAREST_STILL;
+    bool shown = loop->slides.minimum || loop->waited >= GPROJI_NEAREST_STILL;
     return gproji_holds(loop) && (optimality == 0 || (shown && optimality <= gproji_nearest_optimal));
 }
 
@@ -12433,8 +12444,8 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_double(stream, &loop->best.energy, 0, HUGE_VAL);
     gproji_pass_integer(stream, &loop->waited, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->epsilon_least, 0, DBL_MAX);
-    gproji_pass_double(stream, &loop->shift, 0, DBL_MAX);
-    gproji_pass_bool(stream, &loop->minimum);
+    gproji_pass_double(stream, &loop->slides.shift, 0, DBL_MAX);
+    gproji_pass_bool(stream, &loop->slides.minimum);
     gproji_pass_bool(stream, &loop->options.smooth);
     gproji_pass_bool(stream, &loop->stiff);
     gproji_pass_integer(stream, &loop->trust.wary, 0, INT32_MAX / 2);
@@ -24014,7 +24025,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         left = GPROJI_ATTEMPTS_MOST * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_ATTEMPTS_MOST);
     how.nearest = false;
     for (; attempt < first + GPROJI_ATTEMPTS_MOST && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0 &&
-           !form->solve.futile;
+           !form->solve.futile && !form->solve.loop.steered;
          ++attempt) {
         gproj_result other;
         /* 1. Is there enough left for another one? */
@@ -24036,8 +24047,8 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         other = gproji_attempt(form, left, used, &beginning, &how);
         left -= other.iterations - used;
         used = other.iterations;
-        /* 3. The better of the two; its seconds are those of all attempts. */
-        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED ||
+        /* 3. The better of the two, if they were asked for the same; its seconds are those of all attempts. */
+        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || form->solve.loop.steered ||
                gproji_lack(&other) < gproji_lack(&result);
         for (k = 0; k < GPROJ_PHASE_COUNT; ++k) {
             double seconds = result.seconds[k] + other.seconds[k];

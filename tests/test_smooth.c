@@ -655,12 +655,12 @@ GPROJT_TEST(attempts) {
         }
 }
 
-/* Where nothing helps, with a length that cannot hold. */
-static void gprojt_add_impossible(gproj_form *form, const gproj_mesh *mesh) {
+/* Where nothing helps, with a length that cannot hold; returns the group of that. */
+static int32_t gprojt_add_impossible(gproj_form *form, const gproj_mesh *mesh) {
     int32_t edge = 0, fixed[2] = {mesh->origin[0], mesh->origin[1]};
     gproj_add_planarity(form, 1);
     gproj_add_fixed(form, 2, fixed, 1);
-    gproj_add_length_bounds(form, 1, &edge, 9, HUGE_VAL, 1);
+    return gproj_add_length_bounds(form, 1, &edge, 9, HUGE_VAL, 1);
 }
 
 /* Later attempts have the time that earlier ones have left: the more time, the more attempts, and none begins without. */
@@ -686,6 +686,47 @@ GPROJT_TEST(attempts_share_the_time) {
         gproj_mesh_destroy(mesh);
     }
     GPROJT_CHECK(attempts == 3 && budget > 20);
+}
+
+typedef struct gprojt_steering {
+    int32_t at, group;
+} gprojt_steering;
+
+static bool gprojt_steer_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    const gprojt_steering *steering = (const gprojt_steering *)user;
+    if (iteration->number == steering->at)
+        gproj_system_set_schedule(system, steering->group, gproj_keep(2));
+    return true;
+}
+
+/* Attempts that were asked for different things do not compare: the one in which the callback has changed a weight is
+   the last, and the verdict is of its end. */
+GPROJT_TEST(a_steered_attempt_is_the_last) {
+    int32_t first = 0, way;
+    for (way = 0; way < 3; ++way) { /* the first attempt alone; steered in it, and in the second one */
+        gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gprojt_steering steering;
+        gproj_result result;
+        steering.group = gprojt_add_impossible(form, mesh);
+        steering.at = way == 1 ? 1 : first + 2;
+        options.on_iteration = gprojt_steer_late, options.user = &steering;
+        if (way == 0) {
+            steering.at = 0;
+            GPROJT_CHECK(gproj_solve_begin(form, 200, &options, NULL));
+            do result = gproj_solve_advance(form, 0);
+            while (gproj_solve_is_on(form));
+            first = result.iterations;
+        } else {
+            result = gproj_solve(form, 200, &options);
+            GPROJT_CHECK(result.attempts == way && (way == 1 || result.iterations > first + 2));
+        }
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED);
+        GPROJT_NEAR(gprojt_worst(form), result.residual, 1e-9);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 static bool gprojt_spoil_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
@@ -1431,6 +1472,7 @@ int main(void) {
     GPROJT_RUN(wishes_alone_shrink);
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
+    GPROJT_RUN(a_steered_attempt_is_the_last);
     GPROJT_RUN(later_attempts_end_early);
     GPROJT_RUN(nothing_is_added_on_the_way_back);
     GPROJT_RUN(ends_are_compared);
