@@ -1543,9 +1543,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, up to two more attempts follow, each if at least
      8 of the `iterations` are left: the second, if the first holds on a spoiled mesh, guided by closeness to where the
-     solve began with weights 0.3 * 0.7^n for 20 iterations, others (or with skip_closeness) with stiffer steps. None
-     follows where a demand can never hold. The best end counts, the earlier one of equals, or one that is cancelled or
-     fails (gproj_result.attempts). Not in frames (gproj_solve_begin).
+     solve began with weights 0.3 * 0.7^n for 20 iterations, others (or with skip_closeness) with stiffer steps. Wishes
+     that end are left out there: the way they have guided was no good. None follows where a demand can never hold. The
+     best end counts, the earlier one of equals, or one that is cancelled or fails (gproj_result.attempts). Not in
+     frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 200.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -7762,6 +7763,7 @@ typedef enum gproji_role {
     GPROJI_ORDINARY,  /* of a form: its builders add the rows, as in all roles below */
     GPROJI_LAZY,      /* bounds that may stay violated for a step: a good one is not found again for them */
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
+    GPROJI_GUIDE,     /* a wish that the library adds */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
     GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure */
     GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
@@ -10594,14 +10596,20 @@ typedef struct gproji_slides {
     bool minimum; /* the last one had all curvature and a positive definite matrix without a shift */
 } gproji_slides;
 
+/* What becomes of callers' wishes. */
+typedef struct gproji_wishing {
+    int32_t last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
+    double fading; /* > 0: those that would act to the end have this part of their weights, until then */
+    bool left_out; /* those that end have no weight at all */
+} gproji_wishing;
+
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
     gproj_system *system;
     gproj_solve_options options;
     gproji_hooks hooks;
     int32_t iterations; /* at most */
-    int32_t wish_last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
-    double fading;      /* > 0: wishes that would act to the end have this part of their weights, until then */
+    gproji_wishing wishes;
     double tolerance;
     gproji_times time;
     bool begun;    /* the first run has begun */
@@ -10650,25 +10658,28 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
 
 /* Is this a wish that has to end, although its schedule does not say so? */
 GPROJI_INTERNAL bool gproji_is_fading(const gproji_loop *loop, const gproji_group *g) {
-    return loop->fading > 0 && g->kind == GPROJ_WISH && g->role < GPROJI_GUARD && g->schedule.last >= loop->iterations;
+    return loop->wishes.fading > 0 && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE &&
+           g->schedule.last >= loop->iterations;
 }
 
 /* The last iteration in which a group has a weight; 0: it keeps one for ever. */
 GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
     bool guiding = g->schedule.last == GPROJ_LAST_GUIDING;
-    if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wish_last;
+    if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wishes.last;
     return guiding ? 0 : g->schedule.last;
 }
 
 /* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
-    double weight = g->schedule.weight * (gproji_is_fading(loop, g) ? loop->fading : 1);
+    double weight = g->schedule.weight * (gproji_is_fading(loop, g) ? loop->wishes.fading : 1);
     if (g->role == GPROJI_BRAKE)
         return weight * loop->system->stiffness *
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
     if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
+    if (last > 0 && last < loop->iterations && loop->wishes.left_out && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE)
+        return 0;
     return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
@@ -12425,7 +12436,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     bool nearest, begun, ready = s->compiled && s->vector.sum;
     int32_t yield = (int32_t)s->yield;
     if (!gproji_comes_in(stream)) loop->unseen = loop->begun && (s->changed || (loop->restored && loop->unseen));
-    gproji_pass_integer(stream, &loop->wish_last, 0, INT32_MAX);
+    gproji_pass_integer(stream, &loop->wishes.last, 0, INT32_MAX);
     gproji_pass_double(stream, &loop->options.tolerance, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.epsilon, 0, DBL_MAX);
     gproji_pass_double(stream, &loop->options.time_budget, 0, DBL_MAX);
@@ -12460,7 +12471,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
     gproji_pass_integer(stream, &s->progress.unguided, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->earlier, 0, INT32_MAX / 2);
-    gproji_pass_double(stream, &loop->fading, 0, DBL_MAX);
+    gproji_pass_double(stream, &loop->wishes.fading, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->unseen);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
     /* Multipliers that are about to come in need their room. */
@@ -19499,8 +19510,8 @@ static const gproji_rule gproji_targets_rule = {"targets",       GPROJ_CONSTRAIN
                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
 static const gproji_rule gproji_closeness_rule = {"closeness",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
-static const gproji_rule gproji_default_closeness_rule = {"closeness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_CLOSENESS, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_default_closeness_rule = {"closeness",          GPROJ_WISH,   GPROJ_PLACE_VERTEX,
+                                                          GPROJI_OWN_CLOSENESS, GPROJI_GUIDE, NULL};
 
 /* Rows v - p = 0, one a coordinate, for each vertex of the part; p = targets[3 k..] in the mesh's units, or NULL: the
    original places. */
@@ -22190,8 +22201,8 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     return uniform;
 }
 
-static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,      GPROJ_PLACE_EDGE,
-                                                       GPROJI_OWN_FORCES, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,   GPROJ_PLACE_EDGE,
+                                                       GPROJI_OWN_FORCES, GPROJI_GUIDE, NULL};
 
 /* Adds the group that draws the forces to their start. */
 GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
@@ -23665,13 +23676,15 @@ static const double gproji_metric_relative = 0.7; /* power of an edge's length t
 static const double gproji_metric_force = 0.3;    /* of changes of forces, once steps fail */
 /* How the attempts of a smooth solve begin: the first, the one nearby, the stiffer ones. Closeness to the start is no
    bias by default; where constraints have led far away, such as a shape that hangs to one that stands, it finds what
-   there is nearby. */
+   there is nearby. Wishes that end have only guided to an end that is not good, so later attempts go without them. */
 typedef struct gproji_beginning {
     double stiffness;
     double closeness; /* its weight at first; it fades by 0.7 an iteration and lasts for 20 */
+    bool left_out;    /* callers' wishes that end have no weight */
     bool fading;      /* wishes end that would act to the end: a minimum of them was looked for in vain */
 } gproji_beginning;
-static const gproji_beginning gproji_beginnings[] = {{1, 0, false}, {10, 0.3, false}, {10, 0, false}, {3, 0, false}};
+static const gproji_beginning gproji_beginnings[] = {
+    {1, 0, false, false}, {10, 0.3, true, false}, {10, 0, true, false}, {3, 0, true, false}};
 enum {
     GPROJI_NEARBY = 1,
     GPROJI_ATTEMPTS_MOST = 3,
@@ -23831,10 +23844,10 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, ending = false;
     bool started = form->statics && form->statics->started;
     const gproji_part *part;
-    double largest = 0; /* weight of the wishes that are to fade */
+    double largest = 0; /* weight of a caller's wish */
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23870,14 +23883,17 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     /* Wishes that do not say how long they last get half of the iterations. In equilibrium they keep the shape away
        from it, and the longer the farther: then they get 9 at most. */
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
-    solve->loop.wish_last = gproji_max(1, guiding - guiding / 2);
-    if (forces) solve->loop.wish_last = gproji_min(9, solve->loop.wish_last);
-    for (i = 0; beginning->fading && i < gproj_system_group_count(form->system); ++i) {
+    solve->loop.wishes.last = gproji_max(1, guiding - guiding / 2);
+    if (forces) solve->loop.wishes.last = gproji_min(9, solve->loop.wishes.last);
+    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (g->kind == GPROJ_WISH && gproji_own_of(form, i) == GPROJI_OWN_NONE)
-            largest = gproji_fmax(largest, g->schedule.weight);
+        int32_t last = gproji_last_iteration(&solve->loop, g);
+        if (g->kind != GPROJ_WISH || g->role >= GPROJI_GUIDE || g->row_count == 0) continue;
+        largest = gproji_fmax(largest, g->schedule.weight);
+        ending = ending || (g->schedule.weight > 0 && last > 0 && last < iterations);
     }
-    if (largest > 0) solve->loop.fading = gproji_nearest_scale / largest;
+    if (beginning->fading && largest > 0) solve->loop.wishes.fading = gproji_nearest_scale / largest;
+    solve->loop.wishes.left_out = beginning->left_out && ending;
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
@@ -23901,6 +23917,7 @@ GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
     static const char shrinks[] =
         "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
+    static const char alone[] = "; wishes that only guide are left out: no whole mesh was found with them";
     gproji_loop *loop = &form->solve.loop;
     gproj_result *result = &loop->result;
     gproji_hooks *hooks = &loop->hooks;
@@ -23936,7 +23953,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
-    if (gproji_has_active_wish(form) && !gproji_is_held(form))
+    if (gproji_has_active_wish(form) && !loop->wishes.left_out && !gproji_is_held(form))
         gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
@@ -23950,6 +23967,8 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
+    if (loop->wishes.left_out)
+        gproji_append(result->message, sizeof result->message, strlen(result->message), alone, sizeof alone - 1);
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
     return *result;
@@ -24039,6 +24058,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (k == stiffer) ++stiffer;
         beginning = gproji_beginnings[k];
         beginning.fading = options->nearest;
+        beginning.left_out = beginning.left_out && !options->nearest;
         if (here) memcpy(end, x, count * sizeof *end);
         if (here && form->statics) load_scale = form->statics->load_scale;
         gproji_reset_mesh(form);

@@ -729,6 +729,57 @@ GPROJT_TEST(a_steered_attempt_is_the_last) {
     }
 }
 
+/* The largest weights of a wish in the first attempt, which ends at `first`, and in later ones. */
+typedef struct gprojt_wishing {
+    const gproj_form *form;
+    int32_t wish, first;
+    double early, late;
+} gprojt_wishing;
+
+static bool gprojt_note_weight(void *user, gproj_system *system, const gproj_iteration *iteration) {
+    gprojt_wishing *wishing = (gprojt_wishing *)user;
+    double *most = iteration->number <= wishing->first ? &wishing->early : &wishing->late;
+    (void)system;
+    *most = fmax(*most, gprojt_inside_weight(wishing->form, wishing->wish));
+    return true;
+}
+
+/* A wish that pulls a vertex far away spoils the first attempt. Later ones go without it if it only guides. */
+GPROJT_TEST(later_attempts_leave_guides_out) {
+    static const gproj_term z = {3 * 24 + 2, -1, 1};
+    int32_t first = 0, way;
+    for (way = 0; way < 3; ++way) { /* the first attempt alone; the wish guides; it stays */
+        gproj_mesh *mesh = gprojt_twisted(6, 0.3);
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gprojt_wishing wishing = {form, 0, 0, 0, 0};
+        gproj_result result;
+        int32_t wish;
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed_corners(form, 1);
+        wish = gproj_add_rows(form, "pull", GPROJ_WISH, GPROJ_PLACE_VERTEX, 5);
+        gproj_form_add_row(form, wish, 1, &z, -15, 24);
+        if (way == 2) gproj_set_schedule(form, wish, gproj_keep(5));
+        wishing.first = first, wishing.wish = wish;
+        options.on_iteration = gprojt_note_weight, options.user = &wishing;
+        if (way == 0) {
+            GPROJT_CHECK(gproj_solve_begin(form, 200, &options, NULL));
+            do result = gproj_solve_advance(form, 0);
+            while (gproj_solve_is_on(form));
+            first = result.iterations;
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total > 0);
+        } else {
+            result = gproj_solve(form, 200, &options);
+            GPROJT_CHECK(wishing.early == 5 && wishing.late == (way == 2 ? 5 : 0));
+            GPROJT_CHECK(result.attempts > 1 && (result.spoiled.total == 0) == (way == 1));
+            GPROJT_CHECK((strstr(result.message, "left out") != NULL) == (way == 1));
+            GPROJT_CHECK(gproj_form_group_info(form, wish).schedule.weight == 5);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 static bool gprojt_spoil_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
     const int32_t *at = (const int32_t *)user;
     if (iteration->number == *at) gproj_system_add_variables(system, 1, 1, NULL); /* refused */
@@ -1473,6 +1524,7 @@ int main(void) {
     GPROJT_RUN(attempts);
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(a_steered_attempt_is_the_last);
+    GPROJT_RUN(later_attempts_leave_guides_out);
     GPROJT_RUN(later_attempts_end_early);
     GPROJT_RUN(nothing_is_added_on_the_way_back);
     GPROJT_RUN(ends_are_compared);
