@@ -38,7 +38,7 @@
          gproj_add_fairness(form, 0.2);       // one check, at the solve, is enough
          gproj_solve_options options = {0};
          options.smooth = true;               // keeps faces and edges whole
-         gproj_result result = gproj_solve(form, 200, &options);
+         gproj_result result = gproj_solve(form, 300, &options);
          printf("%s\n", result.message);
          if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "flat_panels.obj", NULL);
          gproj_form_destroy(form);
@@ -709,7 +709,7 @@ typedef struct gproj_solve_options {
     bool skip_closeness; /* gproj_solve only: no default guidance if no wish guides */
     bool skip_guard;     /* gproj_solve only: do not keep planar faces from turning over; smooth: nor their corners */
     /* gproj_solve only: measure steps by their smoothness and keep the faces' corners: sound meshes at any resolution.
-       Allow 200 iterations; most meshes take about 10. See gproj_solve, also for `nearest` with it. */
+       Allow 300 iterations; most meshes take about 10. See gproj_solve, also for `nearest` with it. */
     bool smooth;
     /* End at the point nearest to the wishes: a local minimum of sum w^2 phi^2 over the wishes among all x that satisfy
        the constraints and bounds. Wishes keep their scheduled weights to the end: decay and last do not apply, only the
@@ -1547,7 +1547,7 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      that end are left out there: the way they have guided was no good. None follows where a demand can never hold. The
      best end counts, the earlier one of equals, or one that is cancelled or fails (gproj_result.attempts). Not in
      frames (gproj_solve_begin).
-   Iterations are a limit there, no schedule: allow 200.
+   Iterations are a limit there, no schedule: allow 300.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
    gproj_solve_options.nearest and allow 60 iterations. There the guard lasts almost to the end and asks for 0.1 of a

@@ -35,7 +35,7 @@ int main(void) {
     gproj_add_planarity(form, 1);     /* what must hold: every panel is planar, */
     gproj_add_fixed_corners(form, 1); /* and the four corners stay */
     options.smooth = true;            /* of all changes that do it, take the smoothest */
-    result = gproj_solve(form, 200, &options);
+    result = gproj_solve(form, 300, &options);
 
     if (result.outcome != GPROJ_CONVERGED || !original) {
         printf("no flat roof: %s\n", result.message);

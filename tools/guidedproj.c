@@ -1753,7 +1753,7 @@ static const tool_option options[] = {
      "and --move pulls without a drag",
      set_flag, SETS(plain)},
     {"iterations", "N",
-     "at most so many (200, most take about 10; with --plain 20, with --nearest 60, and up to three times as many "
+     "at most so many (300, most take about 10; with --plain 20, with --nearest 60, and up to three times as many "
      "more where none is found)",
      set_iterations, SETS(iterations)},
     {"tolerance", "T", "what must hold holds to this, in mean edge lengths (1e-13)", set_positive, SETS(tolerance)},
@@ -2084,7 +2084,7 @@ static bool check_written_problem(tool *t) {
 
 static bool check_options(tool *t) {
     const char *output = t->output[OUTPUT_MESH].path;
-    int32_t usual = t->nearest ? 60 : t->plain ? 20 : 200, i;
+    int32_t usual = t->nearest ? 60 : t->plain ? 20 : 300, i;
     if (t->output[OUTPUT_STATE].path) { /* the solve has the usual limit, of which this run takes a part */
         t->part = t->iterations;
         t->iterations = t->part > usual ? t->part : usual;

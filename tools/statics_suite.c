@@ -16,7 +16,7 @@
 #include "../guidedproj.h"
 
 enum {
-    ITERATIONS = 200,
+    ITERATIONS = 300,
     STARTS = 3,
     CASES = 24
 };

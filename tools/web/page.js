@@ -586,7 +586,7 @@ function happened(event) {
 
 /* -- actions -- */
 
-function solve() { send({does: 'solve', iterations: 200}); }
+function solve() { send({does: 'solve', iterations: 300}); }
 function stop() { drag = null; send({does: 'stop'}); }
 
 function toggleFixed() {
@@ -891,7 +891,7 @@ function asProgram() {
     }
     if (fixed.length) out(`    gproj_add_fixed(form, ${fixed.length}, fixed, 1);`);
     if (moved.length) out(`    gproj_add_targets(form, ${moved.length}, moved, places, 1);`);
-    out('    gproj_result result = gproj_solve(form, 200, &options);', '    puts(result.message);',
+    out('    gproj_result result = gproj_solve(form, 300, &options);', '    puts(result.message);',
         '    if (result.outcome != GPROJ_FAILED) gproj_mesh_save(mesh, "solved.obj", &error);',
         '    gproj_form_destroy(form);');
     if (surface) out('    gproj_surface_destroy(surface);');
