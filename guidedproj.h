@@ -1537,9 +1537,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      mesh is.
    - The corners of faces resist when they become smaller than 0.2 of their area or turn to the other side, edges when
      they become shorter than 0.2 of their length, and planar faces when they bend by more than 95 degrees at an edge,
-     in place of the guard: faces stay convex, upright and apart where they were. The rows come as they are needed, as
-     the group "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a
-     limit of 50 or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
+     or, where they were bent more, lose 0.2 of the cosine's room before 120 degrees. So faces stay convex, upright and
+     apart where they were. The rows are there in place of the guard and come as they are needed, as the group
+     "corners". If no step is found with them, or after half of the iterations and at most 50 (not with a limit of 50
+     or fewer), they ask for the least that keeps faces from turning over, and are let go later, if need be;
      gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, up to two more attempts follow, each if at least
      8 of the `iterations` are left: the second, if the first holds on a spoiled mesh, guided by closeness to where the
@@ -22545,7 +22546,8 @@ GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool ski
    All faces can be whole and yet lie on each other, so planar faces with the normals m and n at an edge keep
        m'n >= c                                                                                                      (3)
    by two rows, each with one of the normals as it is: a row with both would join the elements of >>schur.
-   Corners and edges without a size at the beginning, and bends of 90 degrees and more, get no rows.
+   Corners and edges without a size at the beginning, and bends that are as good as folded, get no rows. Bends of 90
+   degrees and more have less room before they fold, and c lies in the same part of it.
 
    A row asks for the size that its corner, edge or bend has when it is linearised, at most the part above, at least a
    floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
@@ -22568,13 +22570,14 @@ static const double gproji_corner_upright = 0.1; /* the same as seen along the f
 static const double gproji_corner_turned = 0.05;
 static const double gproji_corner_floor = 0.1, gproji_corner_upright_floor = 0.04; /* asked of smaller corners */
 static const double gproji_corner_last = -0.2, gproji_corner_upright_last = 0.01;  /* asked of all at last */
-static const double gproji_corner_kept = 0.25;    /* a step that leaves less of a small corner is refused */
-static const double gproji_corner_none = 1e-3;    /* of corners and edges that are let go */
-static const double gproji_edge_floor = 0.15;     /* asked of shorter edges */
-static const double gproji_edge_kept = 0.5;       /* a step that leaves less of a short edge is refused */
-static const double gproji_dihedral_least = -0.1; /* cosine of a bend below which it gets a row, */
-static const double gproji_dihedral_wanted = 0;   /* what this asks for */
-static const double gproji_dihedral_floor = -0.3; /* asked of sharper bends */
+static const double gproji_corner_kept = 0.25;     /* a step that leaves less of a small corner is refused */
+static const double gproji_corner_none = 1e-3;     /* of corners and edges that are let go */
+static const double gproji_edge_floor = 0.15;      /* asked of shorter edges */
+static const double gproji_edge_kept = 0.5;        /* a step that leaves less of a short edge is refused */
+static const double gproji_dihedral_least = -0.1;  /* cosine of a bend below which it gets a row, */
+static const double gproji_dihedral_wanted = 0;    /* what this asks for */
+static const double gproji_dihedral_floor = -0.3;  /* asked of sharper bends */
+static const double gproji_dihedral_folded = -0.5; /* that of gproj_measures.folded_edges */
 static const double gproji_corner_margin = 0.05, gproji_corner_margin_most = 0.3;
 enum {
     GPROJI_CORNER_TERMS = 18,
@@ -22621,15 +22624,19 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
-/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was sharp when the
-   solve began: then it is let go. */
-GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x, int32_t edge) {
+/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as folded
+   when the solve began: then it is let go. If it was sharper than a right angle then, with the cosine *sharp < 0, what
+   is between that and a fold counts as what is between a right angle and a fold. */
+GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x, int32_t edge, double *sharp) {
     const gproj_form *form = part->form;
     const int32_t *face = form->mesh->face + 2 * (size_t)edge;
     const double *axis = gproji_corners_of(part)->axis;
+    *sharp = 0;
     if (face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1; /* face[0] is always one */
-    if (!(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]) > 0)) return 1;
-    return gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]);
+    *sharp = gproji_fmin(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]), 0);
+    if (!(*sharp > 0.9 * gproji_dihedral_folded)) return 1;
+    return (gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]) - *sharp) /
+           (1 - *sharp / gproji_dihedral_folded);
 }
 
 /* Gives the terms of an item their coefficients, in the order of gproji_add_corner. Returns which part of the area, or
@@ -22641,13 +22648,14 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     int32_t edge = item - corners->edges, h = item / 2, k, t;
     bool upright = item % 2 != 0;
     gproji_yielding yield = gproji_yield_of(part->form->system);
-    double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has;
+    double least = upright ? gproji_corner_upright_floor : gproji_corner_floor, m[3], area[3], has, sharp;
     if (item >= corners->bends) {
         const double *beside = x + part->form->normal[mesh->face[(item - corners->bends) ^ 1]];
         for (k = 0; k < 3; ++k) term[k].a = beside[k];
-        has = yield == GPROJI_YIELD_SLOWLY ? gproji_dihedral(part, x, (item - corners->bends) / 2)
-                                           : gproji_dihedral_floor;
-        return gproji_fmax(gproji_fmin(has, gproji_dihedral_wanted), gproji_dihedral_floor);
+        has = gproji_dihedral(part, x, (item - corners->bends) / 2, &sharp);
+        if (yield != GPROJI_YIELD_SLOWLY) has = gproji_dihedral_floor;
+        has = gproji_fmax(gproji_fmin(has, gproji_dihedral_wanted), gproji_dihedral_floor);
+        return sharp + has * (1 - sharp / gproji_dihedral_folded);
     }
     if (edge >= 0) {
         double length = corners->length[edge], asked = gproji_edge_floor;
@@ -22733,6 +22741,7 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     const gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     const double least[2] = {gproji_corner_least + margin, gproji_corner_turned + 0.3 * margin};
+    double sharp;
     int32_t f, h, c, k, e;
     bool found = false, planar = gproji_is_on(part->form, part->form->planarity);
     for (f = 0; f < mesh->face_count; ++f) {
@@ -22754,7 +22763,7 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     for (e = 0; e < mesh->edge_count; ++e) { /* with the bends behind both half-edges */
         const int32_t item[3] = {corners->edges + e, corners->bends + 2 * e, corners->bends + 2 * e + 1};
         bool is_long = gproji_edge_length(mesh, x, e) >= (gproji_corner_least + margin) * corners->length[e];
-        bool is_flat = !planar || gproji_dihedral(part, x, e) >= gproji_dihedral_least + margin;
+        bool is_flat = !planar || gproji_dihedral(part, x, e, &sharp) >= gproji_dihedral_least + margin;
         for (k = 0; k < 3; ++k) {
             if ((k == 0 ? is_long : is_flat) || gproji_corner_acts_now(part, item[k])) continue;
             if (first) return true;
