@@ -22624,9 +22624,9 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, none);
 }
 
-/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as folded
-   when the solve began: then it is let go. If it was sharper than a right angle then, with the cosine *sharp < 0, what
-   is between that and a fold counts as what is between a right angle and a fold. */
+/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as
+   folded when the solve began: then it is let go. If it was sharper than a right angle then, with the cosine
+   *sharp < 0, what is between that and a fold counts as what is between a right angle and a fold. */
 GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x, int32_t edge, double *sharp) {
     const gproj_form *form = part->form;
     const int32_t *face = form->mesh->face + 2 * (size_t)edge;
