@@ -22634,7 +22634,7 @@ GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x,
     *sharp = 0;
     if (face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1; /* face[0] is always one */
     *sharp = gproji_fmin(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]), 0);
-    if (!(*sharp > 0.9 * gproji_dihedral_folded)) return 1;
+    if (!(*sharp > 0.98 * gproji_dihedral_folded)) return 1;
     return (gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]) - *sharp) /
            (1 - *sharp / gproji_dihedral_folded);
 }
