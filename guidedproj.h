@@ -23539,11 +23539,20 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     const char *between = "";
     char *text = result->message;
     gproji_damages d;
-    int32_t kind;
+    int32_t kind, r;
     bool known, plain = !form->solve.loop.options.smooth && !form->solve.loop.options.nearest;
     const char *help = plain ? "; a smooth solve may keep it whole"
                              : "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary "
                                "may keep it whole";
+    const gproji_part *part;
+    /* Vertices that glide are led into the corners that stay: the first thing to try. */
+    for (part = form->part; part && !plain; part = part->next) {
+        const gproji_group *g = gproji_group_at(form->system, part->group);
+        for (r = 0; part->rule == &gproji_gliding_boundary_rule && r < g->row_count; ++r)
+            if (g->weight * g->row[r].weight > 0 && gproj_form_is_corner(form, g->row[r].element))
+                help = "; a gliding boundary whose corners are let go, stronger closeness or fairness, or a lower "
+                       "bound of edge lengths may keep it whole";
+    }
     gproji_find_damages(mesh, x, form->original, &d);
     result->spoiled = gproji_spoiled_of(&d);
     if (result->outcome != GPROJ_CONVERGED &&

@@ -781,6 +781,35 @@ GPROJT_TEST(later_attempts_leave_guides_out) {
     }
 }
 
+/* A net of asymptotic lines, whose gliding boundary leads edges into the corners that stay: the verdict says what to let
+   go, and that helps. */
+GPROJT_TEST(corners_of_gliding_boundaries_are_told) {
+    static const double none[4] = {0, 0, 0, 0};
+    int32_t freed;
+    for (freed = 0; freed < 2; ++freed) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(6, 3));
+        gproj_solve_options options = gprojt_smooth();
+        gproj_form *form;
+        gproj_result result;
+        int32_t corner[4], corners = 0, group, v;
+        for (v = 0; v < mesh->vertex_count; ++v) { /* a helicoid */
+            double *p = mesh->position + 3 * v, turn = 0.26 * (v % 7), radius = 0.3 + (v / 7) / 3.0;
+            p[0] = radius * cos(turn), p[1] = radius * sin(turn), p[2] = 0.35 * turn;
+        }
+        form = gproj_form_create(mesh, NULL);
+        for (v = 0; v < mesh->vertex_count; ++v)
+            if (gproj_form_is_corner(form, v) && corners < 4) corner[corners++] = v;
+        gproj_add_planarity(form, 1);
+        group = gproj_add_gliding_boundary(form, 1);
+        if (freed) gproj_set_element_weights(form, group, corners, corner, none);
+        result = gproj_solve(form, 300, &options);
+        GPROJT_CHECK(corners == 4 && (result.spoiled.total == 0) == (freed == 1));
+        GPROJT_CHECK((strstr(result.message, "whose corners are let go") != NULL) == (freed == 0));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 static bool gprojt_spoil_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
     const int32_t *at = (const int32_t *)user;
     if (iteration->number == *at) gproj_system_add_variables(system, 1, 1, NULL); /* refused */
@@ -1526,6 +1555,7 @@ int main(void) {
     GPROJT_RUN(attempts_share_the_time);
     GPROJT_RUN(a_steered_attempt_is_the_last);
     GPROJT_RUN(later_attempts_leave_guides_out);
+    GPROJT_RUN(corners_of_gliding_boundaries_are_told);
     GPROJT_RUN(later_attempts_end_early);
     GPROJT_RUN(nothing_is_added_on_the_way_back);
     GPROJT_RUN(ends_are_compared);
