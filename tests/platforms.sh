@@ -55,9 +55,21 @@ native     | gcc                     | -std=c11 -O2                        | @  
 "
 
 # wine64 stands in Debian's /usr/lib/wine; a home of its own, without the windows that it would open.
-wine=$(command -v wine64 || ls /usr/lib/wine/wine64 2>/dev/null)
+wine64=$(command -v wine64 || ls /usr/lib/wine/wine64 2>/dev/null)
 export WINEPREFIX=$out/wine WINEDEBUG=-all WINEDLLOVERRIDES='mscoree=;mshtml=' DISPLAY=
 wineserver=$(command -v wineserver || ls /usr/lib/wine/wineserver 2>/dev/null)
+
+wine() { # wine PROGRAM ARGUMENT...: in this folder; \r\n becomes \n. Now and then wine starts nothing: then again
+    local program=$1 try code
+    shift
+    for try in 1 2 3; do
+        "$wine64" "$program.exe" "$@" >"$program.out" 2>&1 </dev/null
+        code=$?
+        [ $code -ne 0 ] && [ ! -s "$program.out" ] || break
+    done
+    tr -d '\r' <"$program.out"
+    return $code
+}
 
 lacks() { # lacks NAME COMPILER RUNNER: why the platform cannot be tried here; nothing: it can
     echo 'int main(void) { return 0; }' >"$work/try.c"
@@ -66,7 +78,7 @@ lacks() { # lacks NAME COMPILER RUNNER: why the platform cannot be tried here; n
     elif ! "$2" $options "$work/try.c" -o "$work/try" >/dev/null 2>&1; then
         echo "$2 makes no programs"
     elif [ "$3" = wine ]; then
-        [ -n "$wine" ] || echo 'no wine64'
+        [ -n "$wine64" ] || echo 'no wine64'
     elif [ "$3" != @ ]; then
         have "$3" || echo "no $3"
     elif ! "$work/try" 2>/dev/null; then
@@ -98,13 +110,14 @@ while IFS='|' read -r name compiler options runner programs; do
         run=${runner/@/"'$file'"}
         except=
         case $name-$runner in
-        *wine*) # lines of text end with \r\n there
-            except=$windows run="set -o pipefail; cd '$folder' && '$wine' '$program.exe' \"\$@\" 2>&1 | tr -d '\\r'" ;;
+        *wine*)
+            except=$windows run="cd '$folder' && wine '$program' \"\$@\"" ;;
         *qemu*) except=$slow run="$run \"\$@\"" ;;
         *) run="$run \"\$@\"" ;;
         esac
         [[ $name != i686* ]] || except=$x87
-        echo "export GPROJT_EXCEPT='${except//$'\n'/ }'; $run" >"$folder/$program.sh"
+        { declare -f wine && echo "wine64='$wine64' GPROJT_EXCEPT='${except//$'\n'/ }'; export GPROJT_EXCEPT; $run"; } \
+            >"$folder/$program.sh"
     done
 done <<<"$platforms"
 for stage in library '*'; do # the programs are linked with the library
@@ -119,7 +132,7 @@ done
 
 # ---- states: each machine writes some, each goes on with those of this machine, and this one with all ----
 
-[ -z "$wine" ] || "$wine" cmd /c exit >/dev/null 2>&1 </dev/null # makes its home
+[ -z "$wine64" ] || "$wine64" cmd /c exit >/dev/null 2>&1 </dev/null # makes its home
 for name in "${names[@]}"; do
     bash "$out/$name/platform_state.sh" write "$out/$name/state" >"$work/write.txt" 2>&1 ||
         fail "$name writes no states: $(head -n 3 "$work/write.txt")"
