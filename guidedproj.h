@@ -521,7 +521,7 @@ typedef struct gproj_least_squares {
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
-    GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, at any rate below 1e-9 */
+    GPROJ_LEAST_SQUARES_SOLVED, /* kkt is at the level of rounding, and with what rounding may hide below 1e-9 */
     GPROJ_LEAST_SQUARES_LIMIT, /* factorisations or digits ran out: x is the best point met, see kkt, which may be small
                                   if large entries cancel and the rest is less than their rounding */
     GPROJ_LEAST_SQUARES_FAILED, /* an error; x is unchanged */
@@ -7456,7 +7456,7 @@ GPROJI_INTERNAL bool gproji_squares_is_certain(gproji_squares *s) {
     bool empty = true;
     int32_t i, j;
     int64_t e;
-    if (!(s->best_kkt <= 1e-9)) return false;
+    if (!(s->best_kkt + s->noise / s->scale <= 1e-9)) return false;
     /* 1. noise[j], scaled: the part of the gradient that tells nothing, from rounding or twice the remaining violation;
        -1 if the variable is fixed, or held at a bound beyond doubt. */
     for (j = 0; j < s->columns; ++j) {
@@ -16947,16 +16947,18 @@ GPROJ_API double gproj_volume(const gproj_mesh *mesh) {
 
 /* Measures what faces are like: areas, planarity (in mean edges, for each face too unless NULL), damage. */
 GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planarity, gproj_measures *m) {
-    double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area;
+    double unit = m->mean_edge > 0 ? m->mean_edge : 1, squares = 0, mean_area = 0;
     int32_t f;
     m->planarity_face = mesh->face_count ? 0 : -1;
     for (f = 0; f < mesh->face_count; ++f) {
-        double area_vector[3], mean[3], normal[3], area, flatness;
+        double area_vector[3], mean[3], normal[3], area, more, flatness;
         gproji_area_vector(mesh, mesh->position, f, area_vector);
         gproji_face_plane(mesh, mesh->position, f, mean, normal);
         flatness = gproji_face_planarity(mesh, f, mean, normal) / unit;
         area = gproji_length3(area_vector);
-        m->area += area, squares += area * area;
+        m->area += area;
+        more = area - mean_area;
+        mean_area += more / (f + 1), squares += more * (area - mean_area); /* Welford 1962: nothing cancels */
         if (f == 0 || area < m->min_face_area) m->min_face_area = area;
         if (area > m->max_face_area) m->max_face_area = area;
         m->degenerate_faces += area < 1e-12 * unit * unit;
@@ -16984,9 +16986,7 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
         }
         if (planarity) planarity[f] = flatness;
     }
-    mean_area = mesh->face_count ? m->area / mesh->face_count : 0;
-    if (mean_area > 0)
-        m->area_spread = sqrt(gproji_fmax(0, squares / mesh->face_count - mean_area * mean_area)) / mean_area;
+    if (mean_area > 0) m->area_spread = sqrt(squares / mesh->face_count) / mean_area;
 }
 
 GPROJ_API double gproj_measure_planarity(const gproj_mesh *mesh, double *planarity, double *mean) {

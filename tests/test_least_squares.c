@@ -562,6 +562,24 @@ GPROJT_TEST(columns_of_all_sizes) {
     }
 }
 
+/* Entries from 1e-10 to 1e10: what is called solved has a kkt below 1e-9 also where nothing is rounded. */
+GPROJT_TEST(rounding_hides_no_violation) {
+    uint64_t seed = 4;
+    int round, solved = 0;
+    for (round = 0; round < 4000; ++round) {
+        int32_t columns = 2 + gprojt_below(&seed, 12), rows = columns - 1 + gprojt_below(&seed, 8);
+        squares s = random_squares(rows, columns, 0.6, &seed);
+        gproj_least_squares_result r;
+        int64_t e;
+        for (e = 0; e < s.start[columns]; ++e) s.value[e] *= pow(10, 20 * gprojt_uniform(&seed) - 10);
+        r = solve(&s);
+        solved += r.outcome == GPROJ_LEAST_SQUARES_SOLVED;
+        GPROJT_CHECK(r.outcome != GPROJ_LEAST_SQUARES_SOLVED || !(kkt_of(&s, s.x) > 1.001e-9));
+        squares_free(&s);
+    }
+    GPROJT_CHECK(solved > 1000);
+}
+
 /* Rows that round by more than another row has in all: SOLVED is not said where that other row is not solved. Cases: large
    rows beside small ones, and entries of the same place whose sum is less than their rounding. */
 GPROJT_TEST(cancellation_is_noise) {
@@ -1106,6 +1124,7 @@ int main(void) {
     GPROJT_RUN(bounds_that_are_neighbours);
     GPROJT_RUN(without_bounds);
     GPROJT_RUN(columns_of_all_sizes);
+    GPROJT_RUN(rounding_hides_no_violation);
     GPROJT_RUN(cancellation_is_noise);
     GPROJT_RUN(fixed_variables_leave_no_doubt);
     GPROJT_RUN(entries_that_cancel);

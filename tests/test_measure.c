@@ -318,6 +318,19 @@ GPROJT_TEST(no_area_has_no_spread) {
     }
 }
 
+/* Two rectangles of width 1 and 1 + d: a spread of d / 2, however small. */
+GPROJT_TEST(small_spreads_of_areas) {
+    static const char text[] = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 0\nv 2 1 0\nf 1 2 5 4\nf 2 3 6 5\n";
+    double d;
+    for (d = 1e-3; d > 1e-13; d /= 10) {
+        gproj_mesh *mesh = gproj_mesh_read(text, strlen(text), GPROJ_FORMAT_OBJ, NULL, NULL);
+        mesh->position[6] = mesh->position[15] = 2 + d;
+        d = mesh->position[6] - 2;
+        GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).area_spread, d / (2 + d), 1e-5 * d + 1e-16);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Sides that a corner touches from inside do not cross, whichever side is the first. */
 GPROJT_TEST(sides_that_touch) {
     static const double touched[10] = {0, 0, 4, 0, 4, 2, 2, 0, 0, 2};
@@ -820,6 +833,7 @@ int main(void) {
     GPROJT_RUN(folded_edges);
     GPROJT_RUN(bow_ties);
     GPROJT_RUN(no_area_has_no_spread);
+    GPROJT_RUN(small_spreads_of_areas);
     GPROJT_RUN(sides_that_touch);
     GPROJT_RUN(bow_ties_without_area);
     GPROJT_RUN(bow_ties_with_many_corners);
