@@ -7,13 +7,11 @@
 
 for compiler in gcc clang; do
     syntax $compiler c99 "${modes[@]}" "${without[@]}" "${cblas[@]}" "${vectors[@]/%/$implement}"
-    syntax $compiler c11 "${modes[@]}"
     have $compiler || continue # the time that it takes is looked at below
     job "$compiler -O2" "exec 3>&2; TIMEFORMAT=%U; { time $compiler -O2 $fixed $strict $(stack $compiler) -I'$root' -std=c99 -c whole.c -o $compiler.o 2>&3; } 2>$compiler.seconds"
 done
 for compiler in g++ clang++; do
-    syntax $compiler c++11 "${modes[@]}" "${without[@]}" "${cblas[@]}"
-    syntax $compiler c++20 "${modes[@]}"
+    syntax $compiler c++11 "${modes[@]}" "${cblas[@]}"
 done
 for compiler in 'x86_64-w64-mingw32-gcc -std=c99 header.c' 'x86_64-w64-mingw32-g++ -std=c++11 header.cpp'; do
     have ${compiler%% *} || continue # windows.h has macros for near, far, small, min, ...

@@ -5,11 +5,11 @@
 
 for compiler in gcc clang; do
     syntax $compiler c99 "${without_cblas[@]}"
-    syntax $compiler c11 "${without[@]}"
+    syntax $compiler c11 "${modes[@]}" "${without[@]}"
 done
 for compiler in g++ clang++; do
-    syntax $compiler c++11 "${without_cblas[@]}" "${vectors[@]/%/$implement}"
-    syntax $compiler c++20 "${without[@]}"
+    syntax $compiler c++11 "${without[@]}" "${without_cblas[@]}" "${vectors[@]/%/$implement}"
+    syntax $compiler c++20 "${modes[@]}" "${without[@]}"
     object $compiler $compiler "-O2 $fixed"
 done
 for compiler in i686-linux-gnu-gcc i686-linux-gnu-g++ x86_64-w64-mingw32-gcc x86_64-w64-mingw32-g++; do

@@ -843,7 +843,7 @@ GPROJT_TEST(roofs) {
 
 /* 10,000 vertices. */
 GPROJT_TEST(large_roofs) {
-#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJ_USE_CBLAS)
+#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJT_KERNELS)
     GPROJT_SKIP("large meshes are for plain builds");
 #else
     static const int32_t kinds[4] = {DOME, WAVE, FLAT, SADDLE};
@@ -862,7 +862,7 @@ GPROJT_TEST(large_roofs) {
 /* Compression in shallow shells with uneven loads: columns depend on others to all but a few digits, so that exchanges lead
    nowhere for long. Where no solution is found, the result still is the best point met, near a solution; never the start. */
 GPROJT_TEST(shallow_shells) {
-#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJ_USE_CBLAS)
+#if defined(GPROJT_SANITIZED) || defined(GPROJT_COVERAGE) || defined(GPROJT_KERNELS)
     GPROJT_SKIP("large meshes are for plain builds");
 #else
     int32_t size, i, solved = 0;

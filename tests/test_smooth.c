@@ -384,10 +384,14 @@ static void gprojt_add_planar_gliding(gproj_form *form, void *user) {
 enum {
 #ifdef GPROJT_SANITIZED /* which sees nothing new in those between */
     GPROJT_SAVED_AFTER = 5,
-    GPROJT_PATCHES_STEP = 3
+    GPROJT_PATCHES_STEP = 3,
+    GPROJT_LARGEST_GRADED = 11,
+    GPROJT_LARGEST_CIRCULAR = 6
 #else
     GPROJT_SAVED_AFTER = 1,
-    GPROJT_PATCHES_STEP = 1
+    GPROJT_PATCHES_STEP = 1,
+    GPROJT_LARGEST_GRADED = 17,
+    GPROJT_LARGEST_CIRCULAR = 14
 #endif
 };
 
@@ -433,7 +437,7 @@ GPROJT_TEST(graded_meshes_stay_whole) {
     int32_t n, iterations = 0;
     int k, i, whole = 0, all = 0;
     for (k = 0; k < 2; ++k)
-        for (n = 8; n <= 17; n += 3)
+        for (n = 8; n <= GPROJT_LARGEST_GRADED; n += 3)
             for (i = GPROJT_PATCHES_STEP - 1; i < 12; i += GPROJT_PATCHES_STEP) {
                 gproj_mesh *mesh = gprojt_graded(n, 1.15 + 0.15 * (i % 4), 0.1 + 0.15 * (i / 4));
                 gproj_form *form = gproj_form_create(mesh, NULL);
@@ -1199,7 +1203,7 @@ GPROJT_TEST(smooth_and_nearest_is_nearest) {
    wishes would stay, and no minimum is claimed. */
 GPROJT_TEST(smooth_attempts_follow_the_nearest) {
     int32_t n, wish;
-    for (n = 6; n <= 14; n += 4)
+    for (n = 6; n <= GPROJT_LARGEST_CIRCULAR; n += 4)
         for (wish = 0; wish < 2; ++wish) {
             gproj_mesh *mesh = gprojt_twisted(n, 0.2);
             double *start = gprojt_keep(mesh);
