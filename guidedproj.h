@@ -158,7 +158,7 @@
      Fig. 13 right angles       gproj_add_orthogonal_boundary greenhouse           boundary: boundary_at_right_angles
      4       dragging           gproj_drag_begin              drag                 drag: the_change_is_the_smallest
 
-   Where the paper prints something else: the last term in its normal equations needs eps^2, the sign in its equilibrium
+   Where the paper prints something else: the last term in the normal equations needs eps^2, the sign in its equilibrium
    is reversed, its volume is exact for triangles only, and its conical rows hold trivially at c = 0. The comments below
    give the rows that are solved.
 
@@ -1141,7 +1141,7 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
    loop_halfedge[loop]. */
 GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loop, const gproj_host *host,
                                              gproj_error *error);
-/* Polyline `polyline` of a mesh; closed if it ends with its first vertex. */
+/* Polyline `polyline` of a mesh; closed if the last vertex is the first. */
 GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t polyline, const gproj_host *host,
                                                  gproj_error *error);
 GPROJ_API void gproj_curve_destroy(gproj_curve *curve);
@@ -5526,7 +5526,7 @@ GPROJI_INTERNAL void gproji_count_factor(gproji_analysis *an, int32_t apart) {
                 }
         }
     } else {
-        /* Renumbers by postorder: every subtree gets consecutive positions, and L keeps its entries. */
+        /* Renumbers by postorder: every subtree gets consecutive positions, and L keeps all entries. */
         int32_t *sequence = an->c, *renamed = an->d;
         gproji_postorder(n, an->parent, an->a, an->b, sequence);
         gproji_invert(n, sequence, renamed);
@@ -5766,7 +5766,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
             }
         }
     }
-    /* 2. Padded rows in the front's own panel, under its pivots. */
+    /* 2. Padded rows in the front's own panel, under the pivots. */
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *front = &out->front[f];
         int32_t at = front->width + gproji_panel_shift(front->width);
@@ -7545,7 +7545,7 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
    coefficients, constants and weights, which mostly are small numbers of eighths, have one byte for these. */
 
 enum {
-    GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to its negative, have one byte */
+    GPROJI_SMALL_MOST = 127, /* eighths up to this many, and down to the negative, have one byte */
     GPROJI_SMALL_NONE = 255  /* the byte of other numbers; 8 follow */
 };
 
@@ -13587,7 +13587,7 @@ GPROJI_INTERNAL const char *gproji_save_begin(gproji_saving *saving, const char 
     return "no file can be made in its folder; does that exist, and may you write there?";
 }
 
-/* Puts the new file in its place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
+/* Puts the new file in place, or takes it away again if it is not `written`. Returns as gproji_save_begin. */
 GPROJI_INTERNAL const char *gproji_save_end(gproji_saving *saving, bool written) {
     char folder[GPROJI_PATH_MAX];
     bool complete = gproji_file_close(&saving->file, written) && written;
@@ -17252,7 +17252,7 @@ GPROJI_INTERNAL void gproji_best_start(const gproj_mesh *mesh, gproji_normals *n
 }
 
 /* Finds the offset directions x of a mesh that is parallel at constant vertex distance: unit vectors, those of
-   neighbours mirrored in the plane orthogonal to their edge at its middle. False: no memory. */
+   neighbours mirrored in the plane orthogonal to their edge at the middle. False: no memory. */
 GPROJI_INTERNAL bool gproji_vertex_field(gproji_pool *pool, const gproj_mesh *mesh, double *x) {
     gproji_normals normals = gproji_make_normals(mesh, mesh->position);
     gproji_mirrors work;
@@ -17761,7 +17761,7 @@ GPROJI_INTERNAL bool gproji_try_rows(gproji_candidates *c, gproji_pattern *p, in
     return true;
 }
 
-/* Is this path, seen from its other end, tried as another pattern? Only paths with equal ends can be. */
+/* Is this path, seen from the other end, tried as another pattern? Only paths with equal ends can be. */
 GPROJI_INTERNAL bool gproji_is_turned_kind(const gproji_pattern *p) {
     int32_t below = 0, first = p->first + p->end[0], j, nodes = p->edges - 1;
     for (j = 0; j < nodes; ++j) {
@@ -18303,7 +18303,7 @@ GPROJI_INTERNAL double gproji_outline_angle(const gproji_outline *o, int32_t i) 
                               gproji_outline_vertex(o, i + o->count - 1));
 }
 
-/* Measures an outline's edges and angles, and counts its corners. False without memory. */
+/* Measures an outline's edges and angles, and counts the corners. False without memory. */
 GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool) {
     int32_t k, n = o->count;
     o->angle = (double *)gproji_pool_take(pool, n, sizeof *o->angle);
@@ -18610,7 +18610,7 @@ GPROJI_INTERNAL bool gproji_pairs_analyse(gproji_pairs *m) {
         if (column >= 0) ++m->start[column + 2];
     }
     for (i = 2; i <= m->unknowns; ++i) m->start[i] += m->start[i - 1];
-    for (e = 0; e < m->count; ++e) { /* start[column + 1] moves from the column's beginning to its end */
+    for (e = 0; e < m->count; ++e) { /* start[column + 1] moves from the column's beginning to the end */
         int32_t column = gproji_min(m->pair[2 * e], m->pair[2 * e + 1]);
         m->place[e] = -1;
         if (column < 0) continue;
@@ -19094,7 +19094,7 @@ typedef struct gproji_form_work {
     double *area;      /* the vectorial area of each face */
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
-    gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for its centre */
+    gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for the centre */
 } gproji_form_work;
 
 struct gproj_form {
@@ -19719,7 +19719,7 @@ GPROJI_INTERNAL double gproji_along(const gproj_curve *curve, int32_t segment, c
     return gproji_dot3(d, curve->tangent + 3 * (size_t)segment);
 }
 
-/* Walks from a segment to the one on which p has its foot. */
+/* Walks from a segment to the one that holds the foot of p. */
 GPROJI_INTERNAL int32_t gproji_walk(const gproj_curve *curve, int32_t segment, const double p[3]) {
     bool forward = gproji_along(curve, segment, p, true) > 0;
     bool closed = memcmp(curve->point, curve->point + 3 * (size_t)curve->segment_count, 3 * sizeof(double)) == 0;
@@ -21523,7 +21523,7 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
         if (local) local[1] = 3 * vertex + c;
     }
     if (c == 3) return;
-    /* 3. A z row with a weight has the weight's terms at its end, for gproji_linearise_weight to fill in. */
+    /* 3. A z row with a weight has the weight's terms at the end, for gproji_linearise_weight to fill in. */
     for (k = 0, count = 0; k < spokes; ++k) {
         gproji_set_term(&term[count++], spoke[2 * k], 3 * vertex + 2, 1);
         gproji_set_term(&term[count++], spoke[2 * k], 3 * spoke[2 * k + 1] + 2, -1);
@@ -23251,7 +23251,7 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
    differ then, as by a corner of 60 degrees in a grid whose number of faces along a side is odd, all faces can hardly
    be circular unless some collapse or cross themselves. */
 
-/* The angle inside the mesh at a boundary vertex that stays, between its edges of the boundary. These leave the smaller
+/* The angle inside the mesh at a boundary vertex that stays, between the edges of the boundary. These leave the smaller
    one or the larger; faces at the beginning tell which. */
 GPROJI_INTERNAL double gproji_held_angle(const gproji_spread *s, int32_t v) {
     const gproj_mesh *mesh = s->form->mesh;
@@ -23856,7 +23856,7 @@ GPROJI_INTERNAL gproj_result gproji_refused_result(gproj_code code, const char *
     return gproji_failed_result(&error);
 }
 
-/* Begins form->solve; on failure its result says why. */
+/* Begins form->solve; on failure the result says why. */
 GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, const gproji_beginning *beginning,
                                         const gproj_solve_options *options) {
     gproji_solve *solve = &form->solve;
