@@ -23274,14 +23274,12 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     size_t length = strlen(result->message);
     double most = noticeable;
     int32_t *colour = s->looked, vertex = -1, count = 0, faces, v, i;
-    /* 1. Is every face to be flat and circular? */
+    /* 1. Is every face, all of which are to be flat, to be circular? */
     if (!gproji_rule_is_on(form, &gproji_circularity_rule)) return;
     for (part = form->part; part; part = part->next) {
         const gproji_group *g = gproji_group_at(form->system, part->group);
-        for (i = 0; part->rule == &gproji_circularity_rule || part->rule == &gproji_planarity_rule; ++i) {
-            if (i == g->row_count) break;
+        for (i = 0; part->rule == &gproji_circularity_rule && i < g->row_count; ++i)
             if (!(g->row[i].weight > 0)) return;
-        }
     }
     /* 2. Along a curve with kinks the sums may differ by as much. */
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -23328,18 +23326,24 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
         floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
 }
 
-/* Says which face cannot be flat because of vertices that are held, or that all are. A bend far below the residual
-   would not explain it. Returns whether there is such a face. */
+/* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
+   vertices are held; else a plane that spreads, or angles, if no face has been let go. Returns true in the first case
+   alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
     int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
-    int32_t f, v, bent = 0, face = -1, corners = 0, all = gproji_find_held(form, held, value);
-    bool planar = gproji_is_on(form, form->planarity);
-    for (f = 0; planar && f < form->mesh->face_count; ++f) {
-        int32_t count;
-        double bend = gproji_held_bend(form->mesh, held, value, f, &count);
+    int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
+    bool planar = gproji_is_on(form, form->planarity), whole = planar;
+    const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
+    for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
+        int32_t count, f = g->row[r].element;
+        double bend;
+        whole = whole && g->row[r].weight > 0;
+        if (!(g->row[r].weight > 0) || f == previous) continue;
+        previous = f;
+        bend = gproji_held_bend(form->mesh, held, value, f, &count);
         if (!(bend > noticeable)) continue;
         ++bent;
         if (bend > worst) worst = bend, face = f, corners = count;
@@ -23353,7 +23357,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
     else if (all == vertices)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; all vertices are fixed: let some of them go");
-    else if (planar) {
+    else if (whole) {
         gproji_spread spread;
         memset(&spread, 0, sizeof spread);
         spread.form = form, spread.kept = kept, spread.value = value;
@@ -23545,14 +23549,6 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
                              : "; stronger closeness or fairness, a lower bound of edge lengths, or a freer boundary "
                                "may keep it whole";
     const gproji_part *part;
-    /* Vertices that glide are led into the corners that stay: the first thing to try. */
-    for (part = form->part; part && !plain; part = part->next) {
-        const gproji_group *g = gproji_group_at(form->system, part->group);
-        for (r = 0; part->rule == &gproji_gliding_boundary_rule && r < g->row_count; ++r)
-            if (g->weight * g->row[r].weight > 0 && gproj_form_is_corner(form, g->row[r].element))
-                help = "; a gliding boundary whose corners are let go, stronger closeness or fairness, or a lower "
-                       "bound of edge lengths may keep it whole";
-    }
     gproji_find_damages(mesh, x, form->original, &d);
     result->spoiled = gproji_spoiled_of(&d);
     if (result->outcome != GPROJ_CONVERGED &&
@@ -23566,6 +23562,14 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         gproji_format(text + length, size - length,
                       "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
     if (shrunk < 0.2 || result->spoiled.total == 0) return;
+    /* Vertices that glide are led into the corners that stay: the first thing to try. */
+    for (part = form->part; part && !plain; part = part->next) {
+        const gproji_group *g = gproji_group_at(form->system, part->group);
+        for (r = 0; part->rule == &gproji_gliding_boundary_rule && r < g->row_count; ++r)
+            if (g->weight * g->row[r].weight > 0 && gproj_form_is_corner(form, g->row[r].element))
+                help = "; a gliding boundary whose corners are let go, stronger closeness or fairness, or a lower "
+                       "bound of edge lengths may keep it whole";
+    }
     /* The reason, if it is known; all kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge
        ..."; advice, if there is no reason. */
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);

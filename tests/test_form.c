@@ -1558,7 +1558,7 @@ GPROJT_TEST(refused_targets_name_no_vertex) {
 }
 
 /* Triangles are flat, however they are held, also those whose corners are in a line; of two faces the one that is
-   bent more is named. */
+   bent more is named; of those that are let go, none. */
 GPROJT_TEST(triangles_held_are_not_named) {
     static const double p[42] = {0, 0, 0, 0, 0, 1,   0, 0, 3, 5, 0, 0,   6, 0, 0.5, 6, 1, 0, 5, 1, 0.5,
                                  8, 0, 0, 9, 0, 0.7, 9, 1, 0, 8, 1, 0.7, 1, 0, 0,   2, 0, 0, 1, 1, 1};
@@ -1566,11 +1566,22 @@ GPROJT_TEST(triangles_held_are_not_named) {
     gproj_mesh *mesh = gproj_mesh_create(14, p, 4, degree, corner, NULL, NULL);
     gproj_form *form = gproj_form_create(mesh, NULL);
     gproj_result result;
-    gproj_add_planarity(form, 1);
+    static const int32_t face[2] = {2, 1};
+    static const double none[2] = {0, 0};
+    int32_t planar = gproj_add_planarity(form, 1);
     gproj_add_fixed(form, mesh->vertex_count, NULL, 1);
     result = gproj_solve(form, 10, NULL);
     GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "face 2 cannot become flat"));
     GPROJT_CHECK(strstr(result.message, "and others") != NULL);
+    gproj_set_element_weights(form, planar, 1, face, none);
+    result = gproj_solve(form, 10, NULL);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "face 1 cannot become flat"));
+    GPROJT_CHECK(!strstr(result.message, "and others"));
+    gproj_set_element_weights(form, planar, 2, face, none);
+    GPROJT_CHECK(gproj_solve(form, 10, NULL).outcome == GPROJ_CONVERGED);
+    gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1); /* something else that cannot hold */
+    result = gproj_solve(form, 10, NULL);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && strstr(result.message, "; all vertices are fixed"));
     gproj_form_destroy(form);
     gproj_mesh_destroy(mesh);
 }

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes some 300 quad meshes to try the command line on, into a new folder:
+"""Writes some 300 quad meshes into a new folder, and tries the command line on them:
 
-    python3 tools/more_meshes.py FOLDER [SEED]
+    python3 tools/more_meshes.py FOLDER [SEED]     writes the meshes
+    python3 tools/more_meshes.py --try FOLDER      counts how tools/guidedproj ends on those of a folder, task by task
 
 s_NAME  shapes of OpenSubdiv's regression tests (Debian's source package), refined by Catmull and Clark
 q_NAME  meshes of CGAL's documentation (Debian's libcgal-demo), remeshed with quads by Blender (Quadriflow)
@@ -11,7 +12,12 @@ n_NUMBER  random patches: a grid with vertices of valence 3 or 5, cut, bent by a
 The packages are fetched by apt-get, without being installed (as root, or where /etc/apt can be read), and stay in
 FOLDER.packages; without network, apt or Blender the meshes that need them are left out, and it says so. All meshes
 are connected manifolds with 60 to 4,000 faces. They are for measuring: what they come from has licences of its own.
+
+Trying takes about half an hour. whole: exit code 0, that is, all constraints hold and no face or edge is spoiled.
+told: exit code 1, with a verdict. late: not finished in two minutes. else: any other end, which there should not be;
+the commands of these are printed, and the exit code is 1.
 """
+import concurrent.futures
 import glob
 import math
 import os
@@ -20,6 +26,7 @@ import re
 import subprocess
 import sys
 import tarfile
+import tempfile
 
 FEWEST, MOST = 60, 4000
 
@@ -209,7 +216,7 @@ thing = bpy.data.objects.new('m', mesh)
 bpy.context.collection.objects.link(thing)
 bpy.context.view_layer.objects.active = thing
 thing.select_set(True)
-bpy.ops.object.quadriflow_remesh(target_faces=700, use_preserve_sharp=False, use_preserve_boundary=True, seed=1)
+bpy.ops.object.quadriflow_remesh(target_faces=1500, use_preserve_sharp=False, use_preserve_boundary=True, seed=1)
 with open(target, 'w') as out:
     for v in thing.data.vertices:
         out.write('v %.9g %.9g %.9g\\n' % tuple(v.co))
@@ -314,7 +321,60 @@ def patches(seed, count):
         yield 'n_%03d' % number, *used_points(bent, faces)
 
 
+# ---- trying ----
+
+TASKS = {
+    'planar': ['--planar'],
+    'planar, subdivided': ['--subdivide', '1', '--planar'],
+    'planar, fixed boundary': ['--planar', '--fix', 'boundary'],
+    'planar, gliding, faired': ['--planar', '--glide', 'boundary', '--reference', '@=0.1', '--fairness', '0.2*0.9'],
+    'planar, nearest': ['--planar', '--nearest'],
+    'planar, circular': ['--planar', '--circular'],
+    'planar, conical': ['--planar', '--conical'],
+}
+
+
+def try_one(work):
+    """How a command ends: whole, told, late or else."""
+    try:
+        end = subprocess.run(work, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=False)
+        return {0: 'whole', 1: 'told'}.get(end.returncode, 'else')
+    except subprocess.TimeoutExpired:
+        return 'late'
+
+
+def try_all(folder):
+    tool = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'guidedproj')
+    kinds = {'s': 'OpenSubdiv', 'q': 'CGAL', 'p': 'surfaces', 'n': 'patches'}
+    meshes = sorted(glob.glob(folder + '/*.obj'))
+    if not os.path.exists(tool) or not meshes:
+        sys.exit('no tools/guidedproj: make -C tools' if meshes else folder + ' has no meshes')
+    others = []
+    print('%-26s' % 'task' + ''.join('%22s' % name for name in kinds.values()) + '   whole/told/late/else')
+    with tempfile.TemporaryDirectory() as out, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for task, words in TASKS.items():
+            chosen = [m for m in meshes if not {'--fix', '--glide'} & set(words) or has_boundary(m)]
+            works = [[tool, m, '-o', os.path.join(out, os.path.basename(m))] + [w.replace('@', m) for w in words]
+                     for m in chosen]
+            ends = list(pool.map(try_one, works))
+            others += [' '.join(work) for work, end in zip(works, ends) if end == 'else']
+            cells = []
+            for kind in kinds:
+                mine = [end for m, end in zip(chosen, ends) if os.path.basename(m).startswith(kind)]
+                cells.append('/'.join(str(mine.count(end)) for end in ('whole', 'told', 'late', 'else')))
+            print('%-26s' % task + ''.join('%22s' % cell for cell in cells), flush=True)
+    print('\n'.join(others))
+    sys.exit(bool(others))
+
+
+def has_boundary(path):
+    owner = edges_of(read_obj(open(path, encoding='ascii').read())[1])
+    return any((b, a) not in owner for a, b in owner)
+
+
 def main():
+    if len(sys.argv) == 3 and sys.argv[1] == '--try':
+        try_all(sys.argv[2])
     if len(sys.argv) not in (2, 3) or os.path.exists(sys.argv[1]):
         sys.exit(__doc__ if len(sys.argv) not in (2, 3) else sys.argv[1] + ' exists already; name a new folder')
     folder, seed = os.path.abspath(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) == 3 else 0
