@@ -65,18 +65,18 @@
      refresh          relinearisation of rows that are not quadratic, before each iteration
      merit            sum w^2 phi^2, the objective of the line search
      settle           variable projection: normals and axes take their best values for the vertices as they are
-     bend             second-order correction of a step
+     bend             (a step) to try a second-order correction of it; elsewhere two faces bend at their edge
      stiffness        the damping of Levenberg and Marquardt, in a norm that measures smoothness
      brake            a damping of single variables that acts only after steps have failed
      guard, corners   safeguards: rows that keep faces from inverting or degenerating while a solve is under way; in
                       the loop's section a safeguard is a group of corners
-     attempt          a run of a smooth solve, which may begin again in another way
+     attempt          one solve from its beginning to its end; smooth ones may make several, each in another way
      pass             (a value of a saved state) count, write, check or read it, see >>stream
      verdict          the outcome of a solve and a sentence about it
      spoiled          damaged: faces inverted, crossed or collapsed, edges folded, collapsed or spiked
      cage, handle     the control mesh of a subdivision; a vertex, or a weighted set of vertices, that is dragged
      frame            the iterations of a solve between two pictures (gproj_solve_advance)
-   Residuals of a form are in mean edge lengths.
+   Residuals of a form are in mean edge lengths, as far as rows are lengths (not normals, nor the signs of forces).
 
    HOW IT WORKS   Guided projection (Tang et al. 2014) is Newton's method for more unknowns than equations.
 
@@ -99,8 +99,8 @@
      rows, eps chooses the shortest; unknowns that no row mentions stay put.
      4. Quadratic at the end. A full step leaves exactly 1/2 dx'H dx in each quadratic row, besides a share of about
      (eps/w)^2 in phi. Near a solution |dx| is proportional to the residual, hence 1e-2 becomes 1e-4, 1e-8, 1e-16. To
-     keep out of the way, eps follows the residual from 1e-3 to 1e-5 or less. Far from a solution a full step may do
-     harm: the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows
+     keep out of the way, eps follows the norm of all phi, from 1e-3 to 1e-5 or less. Far from a solution a full step
+     may do harm: the merit along dx is a polynomial of degree 4, so the best length is known; if none helps, eps grows
      (>>loop).
      5. Weights against eps. A weight multiplies the row and enters squared: with w = 1 and eps = 1e-3 a constraint is a
      million times stronger than the pull towards staying put, with w = eps it goes half way only. Constraints that
@@ -250,11 +250,12 @@
      comes to rest), or if a callback sets coefficients that rows share (of planarity, fairness or their like). Every
      allocation may fail: the call returns an error and nothing leaks. An object made from another one (a mesh from a
      mesh, a curve, a stencil) copies all that it needs. Two keep pointers: a form to its mesh and to the curves and
-     surfaces added to it, a drag to its form.
+     surfaces added to it, a drag to its form: free none of these before it.
 
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form with its mesh, system and drag
-     counts as one object. Reading an object that no one changes is always safe.
+     counts as one object. Reading an object that no one changes is always safe. Objects with the same host may call it
+   from their threads at the same time.
 
    DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
      run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
@@ -700,8 +701,8 @@ typedef struct gproj_solve_options {
        sum_t a_t x_t, at most 1e-8; if rounding still keeps a row from holding (large forces), 4 of sum_k
        |dphi/dx_k x_k|, at most 1e-11. */
     double tolerance;
-    double epsilon;     /* > 0: this regularisation in every step; 0: it follows the residual (1e-5 .. 1e-3, less if
-                           steps fall short near the end) */
+    double epsilon;     /* > 0: this regularisation in every step; 0: 0.3 sqrt(sum w^2 phi^2) of what must hold, from
+                           1e-5 to 1e-3 (less if steps fall short near the end); nearest: by the residual */
     double time_budget; /* seconds by the host's clock; 0 or INFINITY: no bound */
     gproj_on_iteration on_iteration; /* may be NULL */
     void *user;
@@ -738,7 +739,7 @@ typedef struct gproj_result {
     gproj_outcome outcome;
     int32_t iterations; /* gproj_iteration.number of the last one in the attempt that counts, without later attempts */
     int32_t damped;     /* steps that were damped, shortened, guarded or met bounds, in the attempt that counts */
-    int32_t attempts;   /* 1, and in a smooth gproj_solve 1 more for each restart */
+    int32_t attempts;   /* 1, and in a smooth gproj_solve 1 more for each restart; 0 if refused */
     double residual;    /* largest |phi| over rows that must hold with weight > 0 */
     double tolerance;   /* the bound that the residual was compared with */
     double step;        /* largest |dx| of the last step */
@@ -808,7 +809,8 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *system, int32_t iteratio
    a boundary loop are linked by next/prev in the direction opposite to the faces.
 
    All arrays are owned by the mesh and read-only but for `position`, which you may change at any time. Corner k of face
-   f is the half-edge k times `next` after face_halfedge[f], in the order of the input. */
+   f is the half-edge k times `next` after face_halfedge[f], in the order of the input. Pass meshes by the pointers
+   that the library has returned: a gproj_mesh that was copied by value is none. */
 typedef struct gproj_mesh {
     int32_t vertex_count;
     int32_t face_count;
@@ -1237,8 +1239,8 @@ typedef struct gproj_offset_measures {
     int32_t reversed_edges; /* they run against the mesh's edges: the distance is larger than a radius of curvature */
 } gproj_offset_measures;
 
-/* All but reversed_edges is infinite if a mesh is NULL, or if the two do not have the same faces; the least distances
-   are infinite and the largest none without a face. */
+/* All but reversed_edges is infinite if a mesh is NULL, or if the two do not have the same faces. Without a face the
+   least distances are infinite, the largest of faces -infinite, and that of vertices 0. */
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -1298,11 +1300,11 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    >>api-form   A mesh, what must hold and what is wished: form-finding.
 
    gproj_form_create reads the mesh's positions; gproj_solve writes them back. Inside, the mesh is moved and scaled so
-   that the mean edge is 1: weights, tolerances and residuals are in mean edge lengths, and a model in mm gives the same
-   shape as in km. Every gproj_add_... appends a group of rows to the form's system and returns the group's number (-1
-   after an error); after an error they do nothing, so check once, at the solve. Weights: 1 for what must hold. Wishes
-   guide by default and then have no weight (gproj_guide), because a wish that stays on biases the constraints; set a
-   schedule to say otherwise. */
+   that the mean edge is 1: tolerances, and residuals that are lengths, are in mean edge lengths, and a model in mm
+   gives the same shape as in km. Every gproj_add_... appends a group of rows to the form's system and returns the
+   group's number (-1 after an error); after an error they do nothing, so check once, at the solve. Weights: 1 for what
+   must hold. Wishes guide by default and then have no weight (gproj_guide), because a wish that stays on biases the
+   constraints; set a schedule to say otherwise. */
 typedef struct gproj_form gproj_form;
 
 /* The form keeps a pointer to the mesh, which must outlive it: destroy the mesh after the form. A NULL mesh gives a
@@ -1321,7 +1323,8 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 /* -- what must hold -- */
 
 /* Faces with more than 3 sides are planar: a unit normal n_k per face as variables, n_k'n_k = 1, and
-   n_k'(v_i - v_j) = 0 for every edge of the face (paper 3.1). */
+   n_k'(v_i - v_j) = 0 for every edge of the face (paper 3.1). Once for a form: a further call sets this weight, in all
+   iterations. */
 GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight);
 /* These vertices keep their positions at gproj_form_create: v_i = p_i, 3 rows each. */
 GPROJ_API int32_t gproj_add_fixed(gproj_form *form, int32_t count, const int32_t *vertices, double weight);
@@ -1498,7 +1501,8 @@ GPROJ_API gproj_code gproj_set_element_weights(gproj_form *form, int32_t group, 
                                                const double *weights);
 GPROJ_API gproj_group_info gproj_form_group_info(const gproj_form *form, int32_t group);
 
-/* Is this boundary vertex a corner: with one face only, or with a turn of the boundary by more than 45 degrees? */
+/* Is this boundary vertex a corner: with one face only, or with a turn of the boundary by more than 45 degrees at
+   gproj_form_create? */
 GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
 
 /* -- solving -- */
@@ -1519,10 +1523,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    these after a solve by multipliers, and the first such solve after it, analyse anew. Either way the constraints are
    met, on paths that differ a little.
 
-   With planar faces, or forces that carry, there is a guard as well (options: skip_guard): while the wishes guide and
-   two iterations longer, at least four, a face that is about to turn over gets a row that asks for 0.4 of its area. The
-   group "guard" has these rows; it acts on the steps only, not on residual and verdict. It helps; gproj_measure counts
-   the faces that have turned all the same.
+   With planar faces, or forces that carry, there is a guard as well (options: skip_guard): with wishes in the first
+   half of the iterations, else while closeness guides, and two iterations longer, at least four, a face that is about
+   to turn over gets a row that asks for 0.4 of its area. The group "guard" has these rows; it acts on the steps only,
+   not on residual and verdict. It helps; gproj_measure counts the faces that have turned all the same.
 
    options->smooth (the command line's default) does more for meshes of any resolution:
    - Steps are measured by how far neighbours move apart, |d_i - d_j| along the edges with a little |d_i|, instead of
@@ -1663,8 +1667,9 @@ GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactio
 
 /* How self-supporting is the mesh as it is? Finds the forces that balance the loads best: densities (edge_count
    numbers, may be NULL) minimise the sum of |sum_j w_ij (v_i - v_j) + f_i|^2, among those that the active
-   gproj_add_compression and gproj_add_tension allow; residuals (vertex_count numbers, may be NULL): the length of the
-   unbalanced force at each vertex, over the mean load of those that are not held. Changes nothing. */
+   gproj_add_compression and gproj_add_tension, or bounds of the caller's like theirs, allow; residuals (vertex_count
+   numbers, may be NULL): the length of the unbalanced force at each vertex, over the mean load of those that are not
+   held. Changes nothing. */
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error);
 /* Why no allowed forces balance the mesh as it is: d, 3 * vertex_count numbers, is the unbalanced force that
    gproj_find_forces leaves at each vertex, over the mean load, 0 along the axes of supports. As virtual displacements
@@ -1753,14 +1758,15 @@ GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *ha
                                        const gproj_drag_options *options, gproj_error *error);
 /* Moves the handles: positions, 3 a handle, in the mesh's units. Displacements count from the beginning of the drag, so
    positions in between do not matter (but see residual_bound). Writes the mesh's positions. Work: 3 additions for each
-   handle and variable; no allocation. An error changes nothing, and the drag goes on: rows were added, a position is
-   not finite or beyond 1e70, or, with a residual_bound, is so far that the constraints cannot be linearised there. */
+   handle and variable; no allocation. An error changes nothing. The drag goes on if a position is not finite or beyond
+   1e70, or, with a residual_bound, so far that the constraints cannot be linearised there; if rows were added, only
+   gproj_drag_end and gproj_drag_cancel are left. */
 GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions);
 /* The largest |phi| over rows that must hold, in mean edge lengths, on the mesh as it has been dragged: an evaluation
    of all rows. */
 GPROJ_API double gproj_drag_residual(gproj_drag *drag);
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag);
-GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last call */
+GPROJ_API const gproj_error *gproj_drag_error(const gproj_drag *drag); /* of the last move or residual */
 GPROJ_API gproj_memory gproj_drag_memory(const gproj_drag *drag);
 /* Releases the handles: guided projection, at most 20 iterations, from the mesh before the drag. (A face that has
    turned over under a pulled vertex would find it hard to turn back.) For n <= 5 wishes guide it: with weight 0.9^n the
@@ -2547,8 +2553,8 @@ GPROJI_INTERNAL void gproji_add_memory(gproj_memory *sum, gproj_memory part) {
 
 /* -- pools -- */
 
-/* A pool holds the blocks of one task or object, for one call that gives them back and one look at `failed`. Each block
-   has a link in front, which must not spoil the alignment of doubles. */
+/* A pool holds the blocks of one task or object, for one call that gives them back and, after any number of takes, one
+   look at `failed`. Each block has a link in front, which must not spoil the alignment of doubles. */
 typedef struct gproji_link {
     struct gproji_link *before; /* the block taken before this one, or NULL */
     size_t bytes;
@@ -2575,7 +2581,8 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
     pool->failed = false;
 }
 
-/* Takes a block. NULL when there is no memory, or if the count is negative or too large for the address space. */
+/* Takes a block. NULL, and pool->failed, when there is no memory, or if the count is negative or too large for the
+   address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
     bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 4 / size;
     size_t bytes = possible ? sizeof(gproji_link) + (size_t)count * size : SIZE_MAX; /* which is refused */
@@ -2607,7 +2614,8 @@ GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, 
     return block;
 }
 
-/* Shrinks the block taken last to `count` elements. NULL when there is no memory; the block then stays. */
+/* Shrinks the block taken last to `count` elements, which may move it. NULL, but not pool->failed, when a host without
+   reallocation has no memory for a second one; the block then stays. */
 GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
     size_t bytes = sizeof(gproji_link) + (size_t)count * size;
     gproji_link *moved = (gproji_link *)gproji_retake(pool->heap, pool->last, pool->last->bytes, bytes, 1);
@@ -2866,10 +2874,10 @@ GPROJI_INLINE double gproji_turn2(const double *xy, int32_t i, int32_t j, int32_
     return (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
 }
 
-/* Sums with independent accumulators, to hide the latency of additions; they are added up pairwise. */
 enum {
-    GPROJI_PARTS = 16
+    GPROJI_PARTS = 16 /* independent accumulators of a sum, which hide the latency of additions */
 };
+/* Adds the accumulators up, pairwise, which overwrites them. */
 GPROJI_INLINE double gproji_add_parts(double part[GPROJI_PARTS]) {
     int32_t half, k;
     for (half = GPROJI_PARTS / 2; half > 0; half /= 2)
@@ -6123,7 +6131,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     for (k = 0; k < sy->nodes; ++k)
         for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
             c->permutation[at++] = member ? member[i] : i;
-    /* Consecutive rows that stay consecutive in the parent's panel are one run: kernels add whole runs. */
+    /* Rows that kernels add to the parent's panel in one go: see gproji_find_pieces. */
     start[0] = 0;
     for (f = 0; f < sy->fronts; ++f) {
         const gproji_front *front = &sy->front[f], *up = front->parent < 0 ? NULL : &sy->front[front->parent];
@@ -8477,7 +8485,8 @@ GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t c
 /* gproji_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
    global. Terms name locals by number. The builder writes the variables to the address returned unless that is NULL,
    row after row: different ones, in the order in which terms name them; a block with several in one row must be
-   joined already. like: a row in the group whose terms are shared if they are equal; -1: none. */
+   joined before the system is compiled. like: a row in the group whose terms are shared if they are equal; -1, or one
+   that is not there yet: none. */
 GPROJI_INTERNAL int32_t *gproji_add_placed_rows(gproj_system *s, int32_t group, int32_t like, int32_t rows,
                                                 int32_t count, const gproj_term *terms, int32_t locals, double constant,
                                                 int32_t element) {
@@ -8598,8 +8607,8 @@ GPROJI_INLINE void gproji_set_row(gproj_system *s, int32_t group, int32_t row, d
     s->group[group].row[row].constant = constant;
 }
 
-/* The terms of a row that shares none and is no run, to change their coefficients in place; gproji_variable_of tells
-   the variables. */
+/* The terms of a row, to change their coefficients in place; gproji_variable_of tells the variables. Not for rows that
+   share terms (gproji_group.common), nor for those with `run`, whose gradient is a copy of the coefficients. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
     GPROJ_ASSERT(!g->common && !g->row[row].run);
@@ -9501,7 +9510,7 @@ GPROJI_INTERNAL bool gproji_schur_number(gproj_system *s, int32_t *met) {
 }
 
 /* Sorts rows by elements, finds the nodes that each joins, and numbers the multipliers. mark: work, by nodes. False: no
-   memory, or d->on is false and it does not pay. */
+   memory. d->on is false afterwards where it does not pay. */
 GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, int64_t rows, int32_t *mark) {
     gproji_schur *d = &s->schur;
     const int32_t *to = belongs;
@@ -10446,10 +10455,10 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    >>loop   Guided projection: steps with damping until the constraints hold, and the verdict. Uses platform, memory,
    error, parallel, vector, cholesky, stream, system, schur.
 
-   Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the residual,
-   so that the first steps are calm and the last ones quadratic; it stays above 1e-5 unless steps fall short, because a
-   smaller one lets rounding grow along the directions that the constraints leave free. The rows are quadratic, so
-   along a step dx the merit
+   Based on Tang et al. (2014), section 3.3, solved for dx instead of x. The regularisation eps follows the norm of
+   all phi, so that the first steps are calm and the last ones quadratic; it stays above 1e-5 unless steps fall short,
+   because a smaller one lets rounding grow along the directions that the constraints leave free. The rows are
+   quadratic, so along a step dx the merit
        M(t) = sum w^2 phi(x + t dx)^2    (constraints and wishes with their weights in this iteration)
    is a polynomial of degree 4 in t that is known exactly from phi(x), grad phi(x)'dx and the rows' products at dx.
    Products are small if dx is, so rounding of phi never makes a short step look like one that raises M. A step that
@@ -10507,7 +10516,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    Drags take all but wishes, guard and metrics (gproji_see_hard). */
 
 static const double gproji_epsilon_usual = 1e-5, gproji_epsilon_max = 1e-3, gproji_epsilon_least = 1e-8;
-static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| */
+static const double gproji_tolerance_most = 1e-8; /* tolerance by the rounding of max |x| and of global sums */
 static const double gproji_noise_most = 1e-11;    /* and by large terms */
 /* A step may violate bounds by this part of the largest residual: they act on the next one then. */
 static const double gproji_bound_slack = 0.1;
@@ -10895,7 +10904,7 @@ GPROJI_INTERNAL void gproji_see_rows(gproji_loop *loop) {
     loop->standing = gproji_take_standing(loop->system);
     residual = loop->standing.residual;
     /* Large forces have large roundings, which max |x| does not tell. Only a residual between the automatic tolerance
-       and its upper limit costs a look at the rows. */
+       and the most that noise may excuse costs a look at the rows. */
     if (loop->options.tolerance <= 0 && residual > loop->tolerance && residual <= gproji_noise_most) {
         double noise = gproji_noise_above(loop);
         if (noise <= DBL_MAX) loop->tolerance = gproji_fmin(noise, gproji_noise_most);
@@ -11087,12 +11096,12 @@ GPROJI_INTERNAL double gproji_step_square(const gproj_system *s) {
     return sum;
 }
 
-/* Bends the full step, which has led to x and left `merit`: adds the factor's answer to the linearised rows'
-   discrepancy there. Returns the merit at the new x; afterwards phi of the rows no longer belongs to the step's
-   beginning. */
+/* Tries to bend the full step, which has led to x and left `merit`: with the factor's answer to the linearised rows'
+   discrepancy there. Keeps that if it is short and the merit falls, else the straight step. Returns the merit of the x
+   kept; afterwards phi of the rows no longer belongs to the step's beginning. */
 GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *course, double merit) {
     gproj_system *s = loop->system;
-    double *straight = s->vector.gradient; /* free when the step is found */
+    double *straight = s->vector.gradient; /* after it was the correction's right-hand side */
     double square = gproji_step_square(s);
     int32_t i, r, v;
     bool bends;
@@ -11720,7 +11729,7 @@ GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
    small s keeps x close to the set, a large one lets a step go farther. */
 
 static const double gproji_nearest_scale = 0.03;    /* s, for the wish with the largest weight */
-static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps: as in other steps it follows the residual */
+static const double gproji_nearest_epsilon = 3e-5;  /* the smallest eps, which follows the residual */
 static const double gproji_nearest_optimal = 1e-6;  /* enough for convergence */
 static const double gproji_nearest_curved = 0.3;    /* below this optimality the matrix has its curvature */
 static const double gproji_nearest_shift = 0.1;     /* the first shift, times s^2 */
@@ -12066,7 +12075,8 @@ GPROJI_INTERNAL bool gproji_is_nearest(const gproji_loop *loop) {
     return gproji_holds(loop) && (optimality == 0 || (shown && optimality <= gproji_nearest_optimal));
 }
 
-/* The iterations; returns how they ended. */
+/* The iterations, see the beginning of this part; goes on where a pause has left off, and returns how they ended: with
+   GPROJ_TIME_OUT also for a pause (loop->paused). */
 GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
     gproj_system *s = loop->system;
     int32_t iterations = loop->iterations, half = iterations / 2 + iterations % 2, n;
@@ -12087,7 +12097,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_nearest(gproji_loop *loop) {
         if (n > last + 1 && loop->standing.residual > gproji_nearest_left * loop->watch.fallen)
             gproji_let_safeguards_yield(loop);
         loop->watch.fallen = loop->standing.residual;
-        /* 1. A slide; in the first iterations, in the last ones, and if no slide helps, a projection. */
+        /* 1. A slide; in the first iterations, and where constraints do not hold in the last ones or if no slide helps,
+           a projection. If neither moves x, that is the end. */
         moved = n > GPROJI_NEAREST_GUIDED && n <= last && gproji_slide(loop);
         if (!moved && (n <= GPROJI_NEAREST_GUIDED || !gproji_holds(loop))) {
             gproji_set_nearest_weights(s, n <= GPROJI_NEAREST_GUIDED ? gproji_nearest_scale : 0, false);
@@ -13059,7 +13070,7 @@ GPROJ_API void gproj_mesh_destroy(gproj_mesh *mesh) {
     gproji_destroy_object(object, sizeof *object);
 }
 
-/* Ends every function that makes a mesh from a soup: returns the mesh, or NULL and keeps nothing. */
+/* Ends every function that makes a mesh: returns it, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_mesh *gproji_mesh_done(gproji_mesh_object *object, gproj_code code) {
     if (!code) return &object->mesh;
     gproj_mesh_destroy(&object->mesh);
@@ -14154,7 +14165,6 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
 /* -- files -- */
 #ifndef GPROJ_NO_STDIO
 
-/* A path for a sentence: its end, if it is long; no control characters. */
 enum {
     GPROJI_PATH_QUOTE_SIZE = 132
 };
@@ -14320,7 +14330,8 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
     return object->column_capacity >= entries && object->weight_capacity >= entries;
 }
 
-/* Creates a zero stencil with room for `entries` entries; NULL when there is no memory. */
+/* Creates a stencil whose rows are all empty, with room for `entries` entries; NULL, and no error is set, when there is
+   no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
                                                     const gproj_host *host) {
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
@@ -15724,6 +15735,7 @@ GPROJI_INTERNAL void gproji_edit_between(const gproji_edit_store *s, int32_t a, 
 
 /* -- checks on arguments -- */
 
+/* The object around the gproj_edit that gproj_edit_create gave; NULL and an error without one, else clears `error`. */
 GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_error *error) {
     if (!gproji_given(edit, "edit", error)) return NULL;
     return (gproji_edit_object *)(void *)((char *)edit - offsetof(gproji_edit_object, edit));
@@ -15854,6 +15866,8 @@ GPROJI_INTERNAL int32_t gproji_edit_divide(gproji_edit_object *object, int32_t w
     return d;
 }
 
+/* Cuts the face of `from` to the corner at `to`, which is no neighbour. Returns the new half-edge, in the part with
+   `to`. */
 GPROJI_INTERNAL int32_t gproji_edit_cut(gproji_edit_object *object, int32_t from, int32_t to) {
     return gproji_edit_divide(object, object->now.face[from], from, to, false);
 }
@@ -18325,8 +18339,9 @@ GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool
     return true;
 }
 
-/* Predicts the cost of the part from place i to place j closed by a cut, whose ends are corners if `first`, `last`.
-   `edges` 0: of any number, if the part is cut again; otherwise 0. */
+/* Predicts the cost (irregular vertices, sides that fit no grid, see gproji_outline) of the part from place i to place
+   j closed by a cut, whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of
+   edges of the cut, which is 0 unless the part is cut again. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
@@ -19019,7 +19034,7 @@ typedef struct gproji_acts {
        call: when a solve or a drag begins. NULL: settles the unknowns. */
     void (*start)(gproji_part *part);
     /* Gives local unknowns of the entries from..to-1 their best values, the vertices staying at x: after steps of
-       smooth solves with planar faces. */
+       smooth solves with planar faces, and of all later attempts. */
     void (*settle)(const gproji_part *part, double *x, int32_t from, int32_t to);
     /* Passes what a saved state keeps besides rows and variables. */
     void (*pass)(gproji_part *part, gproji_stream *stream, gproji_passing passing);
@@ -19080,7 +19095,7 @@ typedef struct gproji_unknowns {
     void *user;
 } gproji_unknowns;
 
-/* A solve in frames (gproj_solve_begin). */
+/* A solve, in frames (gproj_solve_begin) or at once. */
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
@@ -19357,7 +19372,7 @@ GPROJI_INTERNAL gproji_part *gproji_part_of(const gproj_form *form, int32_t grou
     return part;
 }
 
-/* Whom a group belongs to. */
+/* What the library has added a group for; GPROJI_OWN_NONE: it is the caller's. */
 GPROJI_INTERNAL gproji_own gproji_own_of(const gproj_form *form, int32_t group) {
     const gproji_part *part = gproji_part_of(form, group);
     return part ? part->rule->own : GPROJI_OWN_NONE;
@@ -19370,6 +19385,7 @@ GPROJI_INTERNAL gproji_part *gproji_own_part(const gproj_form *form, gproji_own 
     return part;
 }
 
+/* The group of that part; -1: none yet. */
 GPROJI_INTERNAL int32_t gproji_own_group(const gproj_form *form, gproji_own own) {
     const gproji_part *part = gproji_own_part(form, own);
     return part ? part->group : -1;
@@ -19380,7 +19396,7 @@ GPROJI_INTERNAL bool gproji_form_is_open(gproj_form *form) {
     return gproji_form_ready(form) && gproji_system_is_open(form->system);
 }
 
-/* Has the group a weight, in some iteration? */
+/* Has the group a weight by its schedule? */
 GPROJI_INTERNAL bool gproji_is_on(const gproj_form *form, int32_t group) {
     return group >= 0 && gproji_group_at(form->system, group)->schedule.weight > 0;
 }
@@ -19582,7 +19598,7 @@ GPROJ_API int32_t gproj_add_closeness(gproj_form *form, double weight) {
 
 /* -- planar faces -- */
 
-/* form->work.area at the system's x. */
+/* Finds all faces' vectorial areas at the system's x, in form->work.area. */
 GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
     int32_t f;
     for (f = 0; f < form->mesh->face_count; ++f)
@@ -21085,7 +21101,8 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 
 /* -- rows of the caller's -- */
 
-/* The units of a variable: mesh = offset + factor * internal. False: it is neither a vertex's nor the caller's. */
+/* The units of a variable: mesh = offset + factor * internal. False, and nothing is written: it is neither a vertex's
+   nor the caller's. */
 GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, double *offset, double *factor) {
     const gproji_unknowns *u = NULL;
     int32_t low = 0, high = form->unknowns.count, at = variable;
@@ -21504,8 +21521,8 @@ GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t ver
         spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
         h = mesh->next[mesh->twin[h]];
     } while (h != start);
-    /* 2. Rows without weight have terms y_e (x_i - x_j) by places among their variables, which are y_e, x_i, x_j for
-       the first spoke, y_e and x_j for others: so rows with equally many spokes share them. */
+    /* 2. Without dead loads a row has terms y_e (x_i - x_j), by places among the variables y_e, x_i, x_j of the first
+       spoke, then y_e and x_j of each other one. */
     for (k = 0; k < spokes; ++k) {
         int32_t force = k > 0 ? 2 * k + 1 : 0;
         gproji_set_term(&term[2 * k], force, 1, 1);
@@ -21732,7 +21749,7 @@ static const gproji_rule gproji_compression_rule = {"compression",   GPROJ_BOUND
 static const gproji_rule gproji_tension_rule = {"tension",       GPROJ_BOUND, GPROJ_PLACE_EDGE,
                                                 GPROJI_OWN_NONE, GPROJI_LAZY, NULL};
 
-/* sign w >= 0. */
+/* Rows sign y >= 0, y the variable of an edge's density. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
@@ -21756,7 +21773,7 @@ GPROJ_API int32_t gproj_add_tension(gproj_form *form, int32_t count, const int32
     return gproji_add_sign(form, &gproji_tension_rule, -1, count, edges, weight);
 }
 
-/* The six terms of an edge's axial force w l, w the variable of the density, l = u'(v_i - v_j), u along the edge: with
+/* The six terms of an edge's axial force y l, y the variable of the density, l = u'(v_i - v_j), u along the edge: with
    coefficients 0, which gproji_refresh_force_terms fills in. */
 GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge, gproj_term *term) {
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
@@ -21879,7 +21896,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
 
 /* -- the forces that balance a given shape best -- */
 
-/* The edge whose force a bound's row keeps on one side of 0, and `sign`: 1 for w >= 0, -1 for w <= 0. -1: none. */
+/* The edge whose force a bound's row keeps on one side of 0, and `sign`: positive for w >= 0, negative for w <= 0, a
+   caller's row of any size. Returns -1 if there is none. */
 GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t group, int32_t row, double *sign) {
     const gproji_group *g = gproji_group_at(form->system, group);
     int32_t count = (int32_t)g->row[row].terms, edge = g->row[row].element;
@@ -21892,8 +21910,8 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
     return edge;
 }
 
-/* Finds which forces may be negative or positive. Recognises bounds by their rows, so that those count that the caller
-   has added to the system; those with weight 0 do not. */
+/* The sides of 0 on which forces may be: limits are 0 or infinite, whatever bounds of stress ask for. Recognises bounds
+   by their rows, so that a caller's on edges, of one linear term, count as well; those with weight 0 do not. */
 GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
     double sign;
@@ -22406,11 +22424,11 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
    form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
-   a loaded face may. While the wishes guide, and two iterations longer, a face's area along its normal is bounded: it
-   shall keep 0.4 of what it was, s (A(v)'n / a0 - 0.4) >= 0, A = 1/2 sum v_i x v_(i+1), n frozen in each iteration, s =
-   sqrt(a0), and a step that would leave less than 0.2 is found again. These bounds act on the steps only: they are no
-   part of residual and verdict. Where the mesh slides to the nearest one they ask for 0.1, and a step is refused that
-   takes 3/4 of a face's area. */
+   a loaded face may. In the first half of the iterations with wishes, else while closeness guides, and two iterations
+   longer, a face's area along its normal is bounded: it shall keep 0.4 of what it was, s (A(v)'n / a0 - 0.4) >= 0, A =
+   1/2 sum v_i x v_(i+1), n frozen in each iteration, s = sqrt(a0), and a step that would leave less than 0.2 is found
+   again. These bounds act on the steps only: they are no part of residual and verdict. Where the mesh slides to the
+   nearest one they ask for 0.1, and a step is refused that takes 3/4 of a face's area. */
 
 static const double gproji_guard_weight = 0.3, gproji_guard_wanted = 0.4, gproji_guard_small = 0.1,
                     gproji_guard_kept = 0.25, gproji_guard_area = 1e-4;
@@ -22697,8 +22715,8 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
     }
 }
 
-/* Adds the row of an item, without a weight yet. Returns the number; -1 after an error, or if there is no such corner
-   or bend. */
+/* Adds the row of an item (a corner, edge or bend) that has none, without a weight yet. Returns the number; -1 after an
+   error, or if there is no such corner or bend. */
 GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
     gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
@@ -23797,9 +23815,9 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
-   longer guidance leaves too few iterations for meshes near singular points. Returns the iteration in which guidance
-   ends, 0 without any. If the nearest mesh is asked for, closeness defines "near"; a smooth solve is guided only by the
-   closeness of its beginning. */
+   longer guidance leaves too few iterations for meshes near singular points. If the nearest mesh is asked for,
+   closeness defines "near"; an attempt nearby has that of its beginning; `skip`: neither, and what an earlier solve has
+   left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
@@ -24245,8 +24263,8 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproji_renew_group(form->system, group, gproji_group_at(form->system, group)->row_count);
 }
 
-/* Passes whom the library's own groups belong to, and the corners and edges that have rows, in their order. The form
-   gets those that come in, and when they are read no others: how steps are found depends on them. */
+/* Passes which of the library's own groups there are, and the corners and edges that have rows, in their order. The
+   form gets those that come in, and when they are read no others: how steps are found depends on them. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], count = 0, k, r;
     bool in = gproji_comes_in(stream);
