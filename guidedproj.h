@@ -2878,7 +2878,7 @@ enum {
     GPROJI_PARTS = 16 /* independent accumulators of a sum, which hide the latency of additions */
 };
 /* Adds the accumulators up, pairwise, which overwrites them. */
-GPROJI_INLINE double gproji_add_parts(double part[GPROJI_PARTS]) {
+GPROJI_INLINE double gproji_add_accumulators(double part[GPROJI_PARTS]) {
     int32_t half, k;
     for (half = GPROJI_PARTS / 2; half > 0; half /= 2)
         for (k = 0; k < half; ++k) part[k] += part[k + half];
@@ -2892,7 +2892,7 @@ GPROJI_INTERNAL double gproji_dot(const double *a, const double *b, size_t count
     for (i = 0; i + GPROJI_PARTS <= count; i += GPROJI_PARTS)
         for (k = 0; k < GPROJI_PARTS; ++k) part[k] += a[i + k] * b[i + k];
     for (k = 0; i + k < count; ++k) part[k] += a[i + k] * b[i + k];
-    return gproji_add_parts(part);
+    return gproji_add_accumulators(part);
 }
 
 /* sum |a_i b_i| */
@@ -2902,7 +2902,7 @@ GPROJI_INTERNAL double gproji_absolute_dot(const double *a, const double *b, siz
     for (i = 0; i + GPROJI_PARTS <= count; i += GPROJI_PARTS)
         for (k = 0; k < GPROJI_PARTS; ++k) part[k] += fabs(a[i + k] * b[i + k]);
     for (k = 0; i + k < count; ++k) part[k] += fabs(a[i + k] * b[i + k]);
-    return gproji_add_parts(part);
+    return gproji_add_accumulators(part);
 }
 
 /* A sum high + low with twice the digits (Dekker 1971). */
@@ -2968,9 +2968,9 @@ enum {
     GPROJI_FAR_TILES = 96  /* products with more columns fetch their tiles ahead */
 };
 
-/* A scatter run: rows of a matrix, from row `from` on, and their targets in another one. Without gaps: row `to` and the
-   following. With gaps: those of the 8 rows from `to` on, a multiple of 8, with a bit in `mask`; `run` pieces from this
-   one on have no gaps and follow each other. */
+/* A piece of what is scattered: rows of a matrix, from row `from` on, and their targets in another one. Without gaps:
+   row `to` and the following. With gaps: those of the 8 rows from `to` on, a multiple of 8, with a bit in `mask`; `run`
+   pieces from this one on have no gaps and follow each other. */
 typedef struct gproji_piece {
     int32_t from, rows, to;
     uint16_t mask, run;
@@ -6027,7 +6027,7 @@ struct gproj_cholesky {
     const gproji_kernels *kernels;
     gproji_symbolic symbolic;
     int32_t *permutation;   /* columns: the column of A that becomes each column of L */
-    gproji_piece *piece;    /* scatter runs; front f's update matrix: piece[piece_start[f]..piece_start[f + 1]) */
+    gproji_piece *piece;    /* of scattering; front f's update matrix: piece[piece_start[f]..piece_start[f + 1]) */
     int64_t *piece_start;   /* fronts + 1 */
     gproji_entries entries; /* empty for an analysis by blocks */
     gproji_sweep sweep;
@@ -6104,7 +6104,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
     info.factor_bytes = (size_t)gproji_fmin(8.0 * (double)sy->values_size, most);
     work = (double)sy->work_size + (double)cholesky->batch * ((double)sy->side_size + sy->columns) + sy->columns +
            (sy->tasks + 1.0) * 2 * sy->most_rows +
-           2.0 * (double)cholesky->piece_start[sy->fronts]; /* a scatter run has 16 bytes */
+           2.0 * (double)cholesky->piece_start[sy->fronts]; /* gproji_piece has 16 bytes */
     info.work_bytes = (size_t)gproji_fmin(8.0 * work, most);
     info.failed_column = cholesky->failed_column;
     return info;
@@ -6112,7 +6112,7 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 
 /* -- analysis -- */
 
-/* Analyses a graph, and prepares the permutation and the scatter runs. Node i has the columns
+/* Analyses a graph, and prepares the permutation and the pieces of scattering. Node i has the columns
    member[member_start[i]..]; without `member` these numbers themselves. The options give no order. False: no memory. */
 GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
                                                    const gproj_cholesky_options *options, const int32_t *member_start,
@@ -6668,7 +6668,7 @@ GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load loa
 }
 
 /* Sweeps down all levels: from y in c->solution to x. */
-GPROJI_INTERNAL void gproji_cholesky_finish(gproj_cholesky *c, double *x) {
+GPROJI_INTERNAL void gproji_cholesky_descend(gproj_cholesky *c, double *x) {
     const int32_t *start = c->symbolic.level_start;
     c->sweep.found = x;
     for (c->sweep.level = GPROJI_TASK_LEVELS; c->sweep.level >= 0; --c->sweep.level)
@@ -6690,11 +6690,11 @@ GPROJI_INTERNAL void gproji_cholesky_forward(gproj_cholesky *c, int32_t count, c
 GPROJI_INTERNAL void gproji_cholesky_backward(gproj_cholesky *c, const double *y, double *x) {
     memcpy(c->solution, y, (size_t)c->symbolic.columns * sizeof *y);
     c->sides = 1;
-    gproji_cholesky_finish(c, x);
+    gproji_cholesky_descend(c, x);
 }
 
 /* Factors the matrix that `load` adds to the fronts, and solves L y = b for up to c->batch right-hand sides:
-   gproji_cholesky_finish completes their solutions. All memory has been taken. */
+   gproji_cholesky_descend completes their solutions. All memory has been taken. */
 GPROJI_INTERNAL gproj_factor_outcome gproji_cholesky_factor_with(gproj_cholesky *c, gproji_load load, void *user,
                                                                  int32_t sides, const double *b) {
     int32_t failed;
@@ -6736,7 +6736,7 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
     for (r = 0; r < count; r += c->batch) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
         gproji_cholesky_sweep(c, NULL, NULL, gproji_min(count - r, c->batch), b + offset);
-        gproji_cholesky_finish(c, x + offset);
+        gproji_cholesky_descend(c, x + offset);
     }
     return GPROJ_OK;
 }
@@ -6781,7 +6781,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
     largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     for (step = 0; step < steps; ++step) {
         gproji_cholesky_sweep(c, NULL, NULL, 1, residual);
-        gproji_cholesky_finish(c, residual);
+        gproji_cholesky_descend(c, residual);
         for (j = 0; j < n; ++j) x[j] += residual[j];
         largest = gproji_cholesky_residual(n, start, row, values, b, x, residual);
     }
@@ -7738,10 +7738,10 @@ typedef struct gproji_row {
     double weight; /* times the group's; 0: the row counts nowhere */
     double phi;    /* value at the last evaluation */
     int32_t element;
-    bool wide;    /* dense: not in the sparse matrix */
-    bool run;     /* contiguous linear row: global, with linear terms in consecutive variables */
-    bool active;  /* takes part in the next step: an equation always, a bound if the step would else violate it */
-    bool dormant; /* a guard's row that has not come near to acting, and has no multiplier */
+    bool wide;       /* dense: not in the sparse matrix */
+    bool contiguous; /* linear row: global, with linear terms in consecutive variables */
+    bool active;     /* takes part in the next step: an equation always, a bound if the step would else violate it */
+    bool dormant;    /* a guard's row that has not come near to acting, and has no multiplier */
 } gproji_row;
 
 /* Factors in a row's weight, for a group whose elements have weights. */
@@ -8412,7 +8412,7 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
     gproji_row *row;
     gproj_term *to;
     int32_t *local, *place, named = 0, i, t, v, r;
-    bool valid = gproji_is_finite(constant), run;
+    bool valid = gproji_is_finite(constant), contiguous;
     if (s->error.code || group < 0) return -1; /* where no group could be added there is an error of the form's */
     g = &s->group[group];
     if (count > 0 && !terms) {
@@ -8452,9 +8452,9 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
         to[t].a = terms[t].a;
     }
     r = gproji_end_row(s, g, row, named);
-    for (run = g->global && count > 0, t = 0; run && t < count; ++t)
-        run = terms[t].j < 0 && terms[t].i == terms[0].i + t;
-    row->run = run;
+    for (contiguous = g->global && count > 0, t = 0; contiguous && t < count; ++t)
+        contiguous = terms[t].j < 0 && terms[t].i == terms[0].i + t;
+    row->contiguous = contiguous;
     /* 4. Couples blocks that have several variables in the row. */
     for (i = 0; !row->wide && i < named; ++i) {
         int32_t block = s->blocks.first[local[i]];
@@ -8539,7 +8539,7 @@ GPROJI_INLINE bool gproji_system_has_row(const gproj_system *s, int32_t group, i
 /* Sets a row's t-th coefficient. */
 GPROJI_INLINE void gproji_set_coefficient(gproji_group *g, const gproji_row *row, uint32_t t, double a) {
     g->term[row->term + t].a = a;
-    if (row->run && g->local.gradient)
+    if (row->contiguous && g->local.gradient)
         g->local.gradient[row->local + t] = a; /* the gradient: a contiguous linear row's coefficients */
 }
 
@@ -8608,10 +8608,10 @@ GPROJI_INLINE void gproji_set_row(gproj_system *s, int32_t group, int32_t row, d
 }
 
 /* The terms of a row, to change their coefficients in place; gproji_variable_of tells the variables. Not for rows that
-   share terms (gproji_group.common), nor for those with `run`, whose gradient is a copy of the coefficients. */
+   share terms (gproji_group.common), nor for contiguous ones, whose gradient is a copy of the coefficients. */
 GPROJI_INTERNAL gproj_term *gproji_row_terms(gproj_system *s, int32_t group, int32_t row, int32_t *count) {
     gproji_group *g = &s->group[group];
-    GPROJ_ASSERT(!g->common && !g->row[row].run);
+    GPROJ_ASSERT(!g->common && !g->row[row].contiguous);
     *count = (int32_t)g->row[row].terms;
     return g->term + g->row[row].term;
 }
@@ -9018,7 +9018,8 @@ GPROJI_INTERNAL bool gproji_take_compiled_arrays(gproj_system *s) {
         /* Contiguous linear rows keep one gradient; gproji_set_coefficient updates it. */
         for (r = 0; !pool->failed && g->has_wide && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
-            for (t = 0; row->run && t < row->terms; ++t) g->local.gradient[row->local + t] = g->term[row->term + t].a;
+            for (t = 0; row->contiguous && t < row->terms; ++t)
+                g->local.gradient[row->local + t] = g->term[row->term + t].a;
         }
     }
     s->vector.hinges = (gproji_hinge *)gproji_pool_take(pool, hinges, sizeof(gproji_hinge));
@@ -9070,11 +9071,11 @@ GPROJI_INTERNAL void gproji_evaluate_task(void *data, int32_t index) {
         const gproj_term *term = g->term + row->term, *end = term + row->terms;
         double *gradient = g->local.gradient + row->local;
         double phi = row->constant, size = fabs(row->constant); /* size: absolute values, summed up */
-        if (!row->run) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
+        if (!row->contiguous) memset(gradient, 0, (size_t)(row[1].local - row->local) * sizeof *gradient);
         row->phi = 0;
         if (!(row->weight > 0)) row->active = false;
         if (!(row->weight > 0)) continue;
-        if (row->run) {
+        if (row->contiguous) {
             size += gproji_absolute_dot(gradient, x + variable[0], row->terms);
             phi += gproji_dot(gradient, x + variable[0], row->terms);
             term = end;
@@ -9140,7 +9141,7 @@ GPROJI_INLINE double gproji_weight2(const gproji_group *g, const gproji_row *row
 GPROJI_INTERNAL double gproji_row_times(const gproji_group *g, const gproji_row *row, const double *v) {
     double sum = 0;
     int64_t l;
-    if (row->run)
+    if (row->contiguous)
         return gproji_dot(g->local.gradient + row->local, v + g->local.variable[row->local],
                           (size_t)(row[1].local - row->local));
     for (l = row->local; l < row[1].local; ++l) sum += g->local.gradient[l] * v[g->local.variable[l]];
@@ -9152,7 +9153,7 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     int64_t l, count = row[1].local - row->local;
     const double *gradient = g->local.gradient + row->local;
     const int32_t *variable = g->local.variable + row->local;
-    if (row->run) {
+    if (row->contiguous) {
         for (out += variable[0], l = 0; l < count; ++l) out[l] += scale * gradient[l];
         return;
     }
@@ -9272,7 +9273,7 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
         const double *gradient = g->local.gradient + row->local;
         double *out = gproji_wide_side(s, count++), scale = sqrt(gproji_weight2(g, row));
         size_t first, end, v;
-        if (!row->run) {
+        if (!row->contiguous) {
             memset(out, 0, n * sizeof *out);
             gproji_row_add(g, row, scale, out);
             continue;
@@ -9323,7 +9324,7 @@ GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide, bool take
     size_t n = (size_t)s->variable_count;
     int32_t i, k;
     if (taken && wide == 0) {
-        gproji_cholesky_finish(c, s->vector.step);
+        gproji_cholesky_descend(c, s->vector.step);
         return;
     }
     /* 1. z and Y. */
@@ -10441,7 +10442,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
     if (s->wide.acting < c->batch) {
         gproji_schur_border(s, c->solution);
         c->sides = 1;
-        gproji_cholesky_finish(c, d->side);
+        gproji_cholesky_descend(c, d->side);
     } else {
         gproji_cholesky_forward(c, s->wide.acting + 1, d->side, d->side);
         gproji_schur_border(s, d->side);
@@ -10863,7 +10864,7 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
             const int32_t *variable = g->local.variable + row->local;
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
             double sum = 0;
-            if (row->run)
+            if (row->contiguous)
                 sum = gproji_absolute_dot(g->local.gradient + row->local, s->x + variable[0], row->terms);
             else
                 for (; term < end; ++term)
@@ -10975,7 +10976,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             if (!(w2 > 0) || g->role >= GPROJI_METRIC || (g->role == GPROJI_GUARD && !row->active)) continue;
             h = gproji_row_times(g, row, s->vector.step);
             /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference; runs are linear */
-            for (; !row->run && term < end; ++term)
+            for (; !row->contiguous && term < end; ++term)
                 if (term->j >= 0) q += term->a * s->vector.step[variable[term->i]] * s->vector.step[variable[term->j]];
             if (g->kind != GPROJ_BOUND || phi + h < 0) m->model += w2 * (phi + h) * (phi + h);
             if (g->kind != GPROJ_BOUND) {
@@ -12569,7 +12570,7 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
                 s->cholesky->batch = batch;
                 return false;
             }
-            if (first > 0) gproji_cholesky_finish(s->cholesky, motion);
+            if (first > 0) gproji_cholesky_descend(s->cholesky, motion);
             if (s->wide_count > 0 || base) {
                 gproji_merit_gradient(s);
                 wide = gproji_step_sides(s);
@@ -14332,8 +14333,8 @@ GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_
 
 /* Creates a stencil whose rows are all empty, with room for `entries` entries; NULL, and no error is set, when there is
    no memory. */
-GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t columns, size_t entries,
-                                                    const gproj_host *host) {
+GPROJI_INTERNAL gproj_stencil *gproji_stencil_create(int32_t rows, int32_t columns, size_t entries,
+                                                     const gproj_host *host) {
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
     gproj_stencil *stencil;
     if (!object) return NULL;
@@ -14348,7 +14349,7 @@ GPROJI_INTERNAL gproj_stencil *gproji_stencil_begin(int32_t rows, int32_t column
 /* Creates the transposed matrix, columns in ascending order; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_transposed(const gproj_stencil *stencil, const gproj_host *host) {
     int64_t k, entries = stencil->start[stencil->row_count], sum = 0, *start;
-    gproj_stencil *out = gproji_stencil_begin(stencil->column_count, stencil->row_count, (size_t)entries, host);
+    gproj_stencil *out = gproji_stencil_create(stencil->column_count, stencil->row_count, (size_t)entries, host);
     gproji_stencil_object *object;
     int32_t i;
     if (!out) return NULL;
@@ -14407,7 +14408,7 @@ GPROJI_INTERNAL void gproji_builder_begin(gproji_builder *builder, int32_t row_c
     builder->heap = gproji_heap_of(host), builder->host = host;
     builder->column_count = column_count, builder->row = 0, builder->count = 0;
     builder->place = (int64_t *)gproji_take_zeroed(&builder->heap, (size_t)column_count, sizeof *builder->place);
-    builder->stencil = gproji_stencil_begin(row_count, column_count, 8 * (size_t)row_count, host);
+    builder->stencil = gproji_stencil_create(row_count, column_count, 8 * (size_t)row_count, host);
     builder->failed = !builder->place || !builder->stencil;
 }
 
@@ -17468,7 +17469,7 @@ GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double dist
 }
 
 /* Do the two meshes have the same vertices, half-edges and faces, by their numbers? */
-GPROJI_INTERNAL bool gproji_correspond(const gproj_mesh *a, const gproj_mesh *b) {
+GPROJI_INTERNAL bool gproji_have_same_faces(const gproj_mesh *a, const gproj_mesh *b) {
     size_t bytes;
     if (!a || !b || a->vertex_count != b->vertex_count || a->halfedge_count != b->halfedge_count) return false;
     bytes = (size_t)a->halfedge_count * sizeof *a->origin;
@@ -17483,7 +17484,7 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
     gproj_code code = GPROJ_OK;
     int32_t e;
     gproji_error_clear(error);
-    if (!gproji_correspond(mesh, offset)) {
+    if (!gproji_have_same_faces(mesh, offset)) {
         gproji_refuse(error,
                       "a support structure is between a mesh and its offset: there are not two meshes of the same "
                       "faces");
@@ -17525,7 +17526,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
     memset(&m, 0, sizeof m);
     m.face_distance_min = m.vertex_distance_min = HUGE_VAL;
     m.face_distance_max = -HUGE_VAL;
-    if (!gproji_correspond(mesh, offset)) {
+    if (!gproji_have_same_faces(mesh, offset)) {
         m.face_distance_max = m.vertex_distance_max = m.parallel_max = m.support_planarity_max = HUGE_VAL;
         return m;
     }
@@ -21103,7 +21104,7 @@ GPROJ_API int32_t gproj_add_cost_bounds(gproj_form *form, double length_price, d
 
 /* The units of a variable: mesh = offset + factor * internal. False, and nothing is written: it is neither a vertex's
    nor the caller's. */
-GPROJI_INTERNAL bool gproji_find_unit(const gproj_form *form, int32_t variable, double *offset, double *factor) {
+GPROJI_INTERNAL bool gproji_find_units(const gproj_form *form, int32_t variable, double *offset, double *factor) {
     const gproji_unknowns *u = NULL;
     int32_t low = 0, high = form->unknowns.count, at = variable;
     if (variable < 0) return false;
@@ -21137,7 +21138,7 @@ GPROJI_INTERNAL void gproji_start_block(gproj_form *form, int32_t block) {
     }
     for (i = 0; i < u.count && gproji_form_ready(form); ++i) {
         double start = u.value[i];
-        gproji_find_unit(form, u.first + i, &offset, &factor);
+        gproji_find_units(form, u.first + i, &offset, &factor);
         start = (start - offset) / factor;
         if (fabs(u.value[i]) <= GPROJI_COORDINATE_MAX && gproji_is_finite(start))
             x[u.first + i] = start;
@@ -21246,12 +21247,12 @@ GPROJ_API gproj_code gproj_form_get_unknowns(const gproj_form *form, int32_t fir
     if (!gproji_form_ready(form)) return gproji_pass_on(error, gproj_form_error(form));
     x = gproj_system_values(form->system);
     for (i = 0; i < count; ++i)
-        if (!gproji_find_unit(form, first + i, &offset, &factor)) /* also where first < 0; no variable is INT32_MAX */
+        if (!gproji_find_units(form, first + i, &offset, &factor)) /* also where first < 0; no variable is INT32_MAX */
             return gproji_fail(error, GPROJ_ERROR_INDEX, GPROJ_PLACE_VARIABLE, (int64_t)first + i,
                                "unknowns: %l is neither a coordinate of a vertex nor an unknown of yours",
                                (int64_t)first + i);
     for (i = 0; i < count; ++i) {
-        gproji_find_unit(form, first + i, &offset, &factor);
+        gproji_find_units(form, first + i, &offset, &factor);
         values[i] = offset + factor * x[first + i];
     }
     return GPROJ_OK;
@@ -21284,8 +21285,8 @@ GPROJ_API int32_t gproj_form_add_row(gproj_form *form, int32_t group, int32_t co
     for (t = 0; t < count && gproji_form_ready(form); ++t) {
         double a = terms[t].a * form->scale, o[2] = {0, 0}, f[2] = {1, 1};
         int32_t i = terms[t].i, j = terms[t].j;
-        bool found = gproji_find_unit(form, i, &o[0], &f[0]);
-        if (!found || (j != -1 && !gproji_find_unit(form, j, &o[1], &f[1]))) {
+        bool found = gproji_find_units(form, i, &o[0], &f[0]);
+        if (!found || (j != -1 && !gproji_find_units(form, j, &o[1], &f[1]))) {
             gproji_fail(&form->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
                         "%s: term %d of a row: %d is neither a coordinate of a vertex nor an unknown of yours",
                         part->rule->name, t, found ? j : i);
@@ -21912,7 +21913,7 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
 
 /* The sides of 0 on which forces may be: limits are 0 or infinite, whatever bounds of stress ask for. Recognises bounds
    by their rows, so that a caller's on edges, of one linear term, count as well; those with weight 0 do not. */
-GPROJI_INTERNAL void gproji_force_limits(const gproj_form *form, double *lower, double *upper) {
+GPROJI_INTERNAL void gproji_force_sides(const gproj_form *form, double *lower, double *upper) {
     int32_t e, g, r;
     double sign;
     for (e = 0; e < form->mesh->edge_count; ++e) lower[e] = -HUGE_VAL, upper[e] = HUGE_VAL;
@@ -22012,7 +22013,7 @@ GPROJI_INTERNAL bool gproji_solve_balance(gproj_form *form, const double *x, dou
     for (v = 0; v < mesh->vertex_count; ++v)
         for (c = 0; c < 3; ++c)
             if (s->axes[v] >> c & 1) p->b[gproji_axis_row(s, v, c)] = -p->load[3 * (size_t)v + (size_t)c];
-    gproji_force_limits(form, p->lower, p->upper);
+    gproji_force_sides(form, p->lower, p->upper);
     for (e = 0; p->opposite && e < mesh->edge_count; ++e) {
         double lower = p->lower[e];
         p->lower[e] = -p->upper[e];
@@ -22177,7 +22178,7 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     if (size > 0) s->load_scale = 1 / size;
     gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
     /* 2. A typical force: tension if most edges are bound to it, else compression. */
-    gproji_force_limits(form, p->lower, p->upper);
+    gproji_force_sides(form, p->lower, p->upper);
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
         ++carrying;
@@ -22203,7 +22204,7 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
             s->lost[1] = gproji_fmin(lost, DBL_MAX);
         }
         if (uniform) {
-            gproji_force_limits(form, p->lower, p->upper);
+            gproji_force_sides(form, p->lower, p->upper);
             for (e = 0; e < form->mesh->edge_count; ++e)
                 p->force[e] = s->force[e] >= 0 ? gproji_fmin(gproji_fmax(typical, p->lower[e]), p->upper[e]) : 0;
         } else if (lost >= 0) {
@@ -22657,8 +22658,8 @@ GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x,
            (1 - *sharp / gproji_dihedral_folded);
 }
 
-/* Gives the terms of an item their coefficients, in the order of gproji_add_corner. Returns which part of the area, or
-   of the squared length, or which cosine the row asks for. */
+/* Gives the terms of an item their coefficients, in the order of gproji_add_corner_row. Returns which part of the area,
+   or of the squared length, or which cosine the row asks for. */
 GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const double *x, int32_t item,
                                                gproj_term *term) {
     const gproji_corners *corners = gproji_corners_of(part);
@@ -22717,7 +22718,7 @@ GPROJI_INTERNAL void gproji_refresh_corners(void *user, gproj_system *system, in
 
 /* Adds the row of an item (a corner, edge or bend) that has none, without a weight yet. Returns the number; -1 after an
    error, or if there is no such corner or bend. */
-GPROJI_INTERNAL int32_t gproji_add_corner(gproji_part *part, int32_t item) {
+GPROJI_INTERNAL int32_t gproji_add_corner_row(gproji_part *part, int32_t item) {
     gproji_corners *corners = gproji_corners_of(part);
     const gproj_mesh *mesh = part->form->mesh;
     gproj_term term[GPROJI_CORNER_TERMS];
@@ -22819,7 +22820,7 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
     for (item = 0; item < corners->items; ++item) {
         if (!corners->marked[item]) continue;
         corners->marked[item] = 0;
-        row = corners->row[item] < 0 ? gproji_add_corner(part, item) : corners->row[item];
+        row = corners->row[item] < 0 ? gproji_add_corner_row(part, item) : corners->row[item];
         if (row < 0) continue; /* without memory */
         edge = item < corners->bends ? item - corners->edges : (item - corners->bends) / 2;
         gproji_set_row(system, part->group, row, edge < 0 ? sqrt(corners->size[item / 2]) : corners->length[edge], 0);
@@ -24296,7 +24297,7 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         if (stream->mode == GPROJI_CHECK && (corners->marked[item] & GPROJI_CORNER_LISTED))
             gproji_fail_stream(stream, "a corner comes twice");
         corners->marked[item] |= GPROJI_CORNER_LISTED;
-        if (corners->row[item] >= 0 || gproji_add_corner(part, item) >= 0) continue;
+        if (corners->row[item] >= 0 || gproji_add_corner_row(part, item) >= 0) continue;
         if (gproj_system_error(form->system)->code != GPROJ_OK)
             gproji_fail_stream_memory(stream);
         else

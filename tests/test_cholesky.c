@@ -658,7 +658,7 @@ GPROJT_TEST(cholesky_blocks) {
         y = (double *)malloc((size_t)n * 3 * sizeof(double)), x = (double *)malloc((size_t)n * 3 * sizeof(double));
         for (i = 0; i < 3 * n; ++i) y[i] = sin((double)i);
         GPROJT_CHECK(gproji_cholesky_factor_with(c, load_blocks, &blocks, 2, y) == GPROJ_FACTORED);
-        gproji_cholesky_finish(c, x); /* right-hand sides known before the factorisation */
+        gproji_cholesky_descend(c, x); /* right-hand sides known before the factorisation */
         GPROJT_CHECK(gproj_cholesky_solve(c, 1, y + 2 * n, x + 2 * n) == GPROJ_OK);
         for (i = 0; i < 3; ++i)
             GPROJT_CHECK(gproj_cholesky_refine(c, m.start, m.row, m.value, y + i * n, x + i * n, 0) < 1e-11);
