@@ -55,12 +55,13 @@ def is_whole(points, faces):
             fans.setdefault(at, {})[after] = before
     if len(fans) != len(points):
         return False
-    for fan in fans.values():  # follow the fan from where it begins
+    for fan in fans.values():  # follow the fan from where it begins: all of it, once
         ends = set(fan) - set(fan.values())
-        at, steps = (ends or set(fan)).pop(), 0
-        while at in fan and steps < len(fan):
-            at, steps = fan[at], steps + 1
-        if len(ends) > 1 or steps < len(fan):
+        at, seen = (ends or set(fan)).pop(), set()
+        while at in fan and at not in seen:
+            seen.add(at)
+            at = fan[at]
+        if len(seen) < len(fan):
             return False
     reached, todo = {0}, [0]
     neighbours = {}
@@ -344,11 +345,11 @@ def try_one(work):
 
 
 def try_all(folder):
-    tool = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'guidedproj')
+    tool = os.environ.get('GPROJ_TOOL') or os.path.join(os.path.dirname(os.path.abspath(__file__)), 'guidedproj')
     kinds = {'s': 'OpenSubdiv', 'q': 'CGAL', 'p': 'surfaces', 'n': 'patches'}
     meshes = sorted(glob.glob(folder + '/*.obj'))
     if not os.path.exists(tool) or not meshes:
-        sys.exit('no tools/guidedproj: make -C tools' if meshes else folder + ' has no meshes')
+        sys.exit('no %s: make -C tools' % tool if meshes else folder + ' has no meshes')
     others = []
     print('%-26s' % 'task' + ''.join('%22s' % name for name in kinds.values()) + '   whole/told/late/else')
     with tempfile.TemporaryDirectory() as out, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
@@ -396,4 +397,5 @@ def main():
         print('%d %s%s' % (count, what, '' if count else ': see %s/log.txt' % packages), flush=True)
 
 
-main()
+if __name__ == '__main__':
+    main()
