@@ -13,7 +13,7 @@ The packages are fetched by apt-get, without being installed (as root, or where 
 FOLDER.packages; without network, apt or Blender the meshes that need them are left out, and it says so. All meshes
 are connected manifolds with 60 to 4,000 faces. They are for measuring: what they come from has licences of its own.
 
-Trying takes about half an hour. whole: exit code 0, that is, all constraints hold and no face or edge is spoiled.
+Trying takes about a quarter of an hour. whole: exit code 0, that is, all constraints hold and no face or edge is spoiled.
 told: exit code 1, with a verdict. late: not finished in two minutes. else: any other end, which there should not be;
 the commands of these are printed, and the exit code is 1.
 """
