@@ -62,8 +62,8 @@
      row, group       one scalar equation; the rows of one kind, with a common name, weight and schedule
      element, place   the vertex, edge or face that a row belongs to; the kind of thing that an index counts
                       (in >>schur an element is a bundle of rows that share unknowns)
-     local            a row's variable by its place in the row; local or auxiliary unknowns are an element's alone, as the
-                      normal is a face's
+     local            a row's variable by its place in the row; local or auxiliary unknowns are those of one element, as
+                      the normal of a face
      schedule         the weight in each iteration (continuation)
      refresh          relinearisation of rows that are not quadratic, before each iteration
      merit            sum w^2 phi^2, the objective of the line search
