@@ -10676,7 +10676,7 @@ GPROJI_INTERNAL bool gproji_is_fading(const gproji_loop *loop, const gproji_grou
            g->schedule.last >= loop->iterations;
 }
 
-/* The last iteration in which a group has a weight; 0: it keeps one for ever. */
+/* The last iteration in which a group has a weight; 0: it keeps one for ever, and is no wish. */
 GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
     bool guiding = g->schedule.last == GPROJ_LAST_GUIDING;
     if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wishes.last;
@@ -10692,8 +10692,7 @@ GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_gr
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
     if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
-    if (last > 0 && last < loop->iterations && loop->wishes.left_out && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE)
-        return 0;
+    if (last < loop->iterations && loop->wishes.left_out && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE) return 0;
     return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
@@ -23934,7 +23933,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
         int32_t last = gproji_last_iteration(&solve->loop, g);
         if (g->kind != GPROJ_WISH || g->role >= GPROJI_GUIDE || g->row_count == 0) continue;
         largest = gproji_fmax(largest, g->schedule.weight);
-        ending = ending || (g->schedule.weight > 0 && last > 0 && last < iterations);
+        ending = ending || (g->schedule.weight > 0 && last < iterations);
     }
     if (beginning->fading && largest > 0) solve->loop.wishes.fading = gproji_nearest_scale / largest;
     solve->loop.wishes.left_out = beginning->left_out && ending;
