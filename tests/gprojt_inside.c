@@ -35,6 +35,11 @@ bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, 
     return gproji_refuse_turned((void *)(uintptr_t)form, before, after);
 }
 
+double gprojt_inside_dihedral(const gproj_form *form, int32_t edge) {
+    double sharp, *x = gproj_system_values(form->system);
+    return gproji_dihedral(gproji_own_part(form, GPROJI_OWN_CORNERS), x, edge, &sharp);
+}
+
 double gprojt_inside_lack(const gproj_result *result) { return gproji_lack(result); }
 
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient) {

@@ -37,6 +37,8 @@ void gprojt_inside_spoil_solve(gproj_form *form);
 /* Do the safeguards of corners refuse a step between these variables? Does the guard of faces? */
 bool gprojt_inside_refuses(const gproj_form *form, const double *before, const double *after);
 bool gprojt_inside_refuses_turned(const gproj_form *form, const double *before, const double *after);
+/* gproji_dihedral at the system's x. */
+double gprojt_inside_dihedral(const gproj_form *form, int32_t edge);
 
 /* Is end a of an attempt better than b? */
 double gprojt_inside_lack(const gproj_result *result);

@@ -331,6 +331,35 @@ GPROJT_TEST(small_spreads_of_areas) {
     }
 }
 
+/* Circularity is how the distances of the corners from the circumcentre differ; that is the point nearest to the
+   perpendicular bisectors of all sides, each weighed by its length. */
+GPROJT_TEST(circularity_by_the_bisectors) {
+    static const double p[5][2] = {{0, 0}, {2, 0.1}, {2.5, 1}, {1, 1.7}, {-0.2, 1}};
+    static const char text[] = "v 0 0 3\nv 2 .1 3\nv 2.5 1 3\nv 1 1.7 3\nv -.2 1 3\n";
+    int32_t corners, k;
+    for (corners = 4; corners <= 5; ++corners) {
+        char obj[200];
+        double uu = 0, uv = 0, vv = 0, bu = 0, bv = 0, x, y, least = 1e9, most = 0, edge = 0;
+        gproj_mesh *mesh;
+        snprintf(obj, sizeof obj, "%sf 1 2 3 4%s\n", text, corners == 5 ? " 5" : "");
+        mesh = gproj_mesh_read(obj, strlen(obj), GPROJ_FORMAT_OBJ, NULL, NULL);
+        for (k = 0; k < corners; ++k) {
+            const double *a = p[k], *b = p[(k + 1) % corners];
+            double u = b[0] - a[0], v = b[1] - a[1], along = u * (a[0] + b[0]) / 2 + v * (a[1] + b[1]) / 2;
+            uu += u * u, uv += u * v, vv += v * v, bu += u * along, bv += v * along;
+            edge += sqrt(u * u + v * v) / corners;
+        }
+        x = (bu * vv - bv * uv) / (uu * vv - uv * uv), y = (bv * uu - bu * uv) / (uu * vv - uv * uv);
+        for (k = 0; k < corners; ++k) {
+            double d = sqrt((p[k][0] - x) * (p[k][0] - x) + (p[k][1] - y) * (p[k][1] - y));
+            least = fmin(least, d), most = fmax(most, d);
+        }
+        GPROJT_CHECK(most - least > 0.01);
+        GPROJT_NEAR(gproj_measure(mesh, NULL, NULL).circularity_max, (most - least) / edge, 1e-12);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Sides that a corner touches from inside do not cross, whichever side is the first. */
 GPROJT_TEST(sides_that_touch) {
     static const double touched[10] = {0, 0, 4, 0, 4, 2, 2, 0, 0, 2};
@@ -834,6 +863,7 @@ int main(void) {
     GPROJT_RUN(bow_ties);
     GPROJT_RUN(no_area_has_no_spread);
     GPROJT_RUN(small_spreads_of_areas);
+    GPROJT_RUN(circularity_by_the_bisectors);
     GPROJT_RUN(sides_that_touch);
     GPROJT_RUN(bow_ties_without_area);
     GPROJT_RUN(bow_ties_with_many_corners);

@@ -2269,7 +2269,7 @@ GPROJT_TEST(same_bits_for_all_workers) {
 /* Supports that may move, and circular faces: a point satisfies everything, but its loads are nothing. */
 GPROJT_TEST(a_point_is_no_equilibrium) {
     int wish, each;
-    for (wish = 0, each = 0; each < 2; each += wish, wish = !wish) { /* the density of all edges, or of each */
+    for (wish = 0, each = 0; each < 4; each += wish, wish = !wish) { /* density of all edges, of each; area load, snow */
         gproj_mesh *mesh = gprojt_vault(QUADS, 6, 2, 0.6);
         double *density = gprojt_numbers(mesh->edge_count);
         int32_t corner[4], count = 0, v;
@@ -2280,9 +2280,9 @@ GPROJT_TEST(a_point_is_no_equilibrium) {
         for (v = 0; v < mesh->vertex_count && count < 4; ++v)
             if (gproj_form_is_corner(form, v)) corner[count++] = v;
         supports.count = count, supports.vertex = corner;
-        loads.density = 1;
+        loads.density = each < 2, loads.area_load = each == 2, loads.snow = each == 3;
         for (v = mesh->edge_count / 8; v < mesh->edge_count; ++v) density[v] = 1;
-        if (each) loads.edge_density = density;
+        if (each == 1) loads.edge_density = density;
         gproj_add_equilibrium(form, &loads, &supports, 1);
         if (wish) gproj_add_fairness(form, 0.3);
         if (!wish) gproj_add_fixed_corners(form, 1);
