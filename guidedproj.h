@@ -258,7 +258,7 @@
    THREADS  The library starts none. Give a parallel-for in gproj_host to share the work. Different objects may be used
      by different threads at the same time; one object by one thread at a time. A form with its mesh, system and drag
      counts as one object. Reading an object that no one changes is always safe. Objects with the same host may call it
-   from their threads at the same time.
+     from their threads at the same time.
 
    DETERMINISM  The same input gives the same bytes on the same processor and build: on any number of threads, in any
      run. Other compilers, processors with other vector units (the same program chooses its kernels by them, see
@@ -18343,8 +18343,8 @@ GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool
 }
 
 /* Predicts the cost (irregular vertices, sides that fit no grid, see gproji_outline) of the part from place i to place
-   j closed by a cut, whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of
-   edges of the cut, which is 0 unless the part is cut again. */
+   j closed by a cut, whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of edges of
+   the cut, which is 0 unless the part is cut again. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};

@@ -45,7 +45,7 @@ def edges_of(faces):
 
 
 def is_whole(points, faces):
-    """A connected manifold, each vertex with one fan of faces, edges and areas not zero."""
+    """A connected manifold, each vertex with one fan of faces, no edge next to nothing."""
     owner = edges_of(faces)
     if owner is None or not FEWEST <= len(faces) <= MOST:
         return False
