@@ -1038,6 +1038,16 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
                                       gproj_error *error);
 
+/* Makes the mesh along the diagonals (the ambo of Conway, the medial mesh). Vertex e is the midpoint of edge e; each
+   face becomes the one of its sides' midpoints, with the same number; after these each vertex with faces, in ascending
+   order, becomes the face of its edges' midpoints. In a mesh of quads the new edges are parallel to the diagonals, the
+   faces of quads are parallelograms, hence flat, and vertices of valence 4 become quads. Where edges follow asymptotic
+   directions of a saddle-shaped surface, faces cannot become flat; those of the mesh along the diagonals nearly are. It
+   ends at the boundary as the dual does: the boundary's corners and vertices without a face are its last vertices, and
+   polylines stay if all their vertices do. Refused at an inner vertex with two edges, whose face would have two
+   corners. */
+GPROJ_API gproj_mesh *gproj_mesh_diagonals(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
+
 /* ------------------------------------------------------------------------------------------------------------
    >>api-subdivide   Subdivision: smooth fine meshes from coarse cages, and how they follow their cages.
 
@@ -16405,10 +16415,11 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
 
 /* -- the dual -- */
 
-/* Work for gproj_mesh_dual. Each half-edge gives a corner, each boundary vertex two or three more. */
+/* Work for gproj_mesh_dual, where each half-edge gives a corner and each boundary vertex two or three more, and for
+   gproj_mesh_diagonals, where each half-edge gives two and boundary vertices one more. */
 typedef struct gproji_dual {
     gproji_draft draft;
-    int32_t *vertex;   /* vertex_count: a vertex's number in the dual, or -1 */
+    int32_t *vertex;   /* vertex_count: a vertex's number in the new mesh, or -1 */
     int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
     int32_t *seen;     /* face_count: the last face that met it as a neighbour */
 } gproji_dual;
@@ -16423,13 +16434,40 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
+/* Adds the boundary's corners, then vertices without a face, as they are. */
+GPROJI_INTERNAL void gproji_dual_keep(const gproj_mesh *mesh, gproji_dual *dual) {
+    int32_t k, v;
+    gproji_fill(dual->vertex, mesh->vertex_count, -1);
+    for (k = 0; k < 2; ++k)
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            if (k == 0 ? !gproji_is_corner(mesh, mesh->position, v) : mesh->vertex_halfedge[v] >= 0) continue;
+            dual->vertex[v] = dual->draft.soup.vertex_count++;
+            gproji_copy3(mesh->position + 3 * (size_t)v, dual->draft.position + 3 * (size_t)dual->vertex[v]);
+        }
+}
+
+/* Adds the polylines all of whose vertices were kept. */
+GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *dual) {
+    gproji_draft *draft = &dual->draft;
+    int32_t p, i, v, end = 0;
+    for (p = 0; p < mesh->polyline_count; ++p) {
+        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
+            v = dual->vertex[mesh->polyline_vertex[i]];
+            if (v < 0) break;
+            draft->vertex[end++] = v;
+        }
+        if (i == mesh->polyline_start[p + 1]) draft->start[++draft->soup.polyline_count] = end;
+        end = draft->start[draft->soup.polyline_count];
+    }
+}
+
 /* Makes the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
    vertex_face: the face of each vertex, or NULL. */
 GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproji_mesh_object *made, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
-    int32_t f, e, v, k, h, g, p, i, begin, end = 0;
+    int32_t f, e, v, k, h, g, begin;
     /* 1. No two faces may have two edges in common. */
     gproji_fill(dual->seen, mesh->face_count, -1);
     for (f = 0; f < mesh->face_count; ++f)
@@ -16444,13 +16482,7 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
     for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
     for (e = 0; e < mesh->edge_count; ++e)
         dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
-    gproji_fill(dual->vertex, mesh->vertex_count, -1);
-    for (k = 0; k < 2; ++k)
-        for (v = 0; v < mesh->vertex_count; ++v) {
-            if (k == 0 ? !gproji_is_corner(mesh, mesh->position, v) : mesh->vertex_halfedge[v] >= 0) continue;
-            gproji_copy3(mesh->position + 3 * (size_t)v, draft->position + 3 * (size_t)soup->vertex_count);
-            dual->vertex[v] = soup->vertex_count++;
-        }
+    gproji_dual_keep(mesh, dual);
     /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
        corner. */
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -16469,42 +16501,85 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (dual->vertex[v] >= 0) draft->corner[soup->corner_count++] = dual->vertex[v];
         draft->degree[soup->face_count++] = soup->corner_count - begin;
     }
-    /* 4. Polylines that are in the dual as a whole. */
-    for (p = 0; p < mesh->polyline_count; ++p) {
-        for (i = mesh->polyline_start[p]; i < mesh->polyline_start[p + 1]; ++i) {
-            v = dual->vertex[mesh->polyline_vertex[i]];
-            if (v < 0) break;
-            draft->vertex[end++] = v;
-        }
-        if (i == mesh->polyline_start[p + 1]) draft->start[++soup->polyline_count] = end;
-        end = draft->start[soup->polyline_count];
-    }
+    gproji_dual_polylines(mesh, dual);
     return gproji_mesh_build(made, soup, error);
 }
 
-GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
-                                      gproj_error *error) {
+/* Makes the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and each
+   vertex with faces. */
+GPROJI_INTERNAL gproj_code gproji_diagonals_build(const gproj_mesh *mesh, gproji_dual *dual, gproji_mesh_object *made,
+                                                  gproj_error *error) {
+    gproji_draft *draft = &dual->draft;
+    gproji_soup *soup = &draft->soup;
+    int32_t e, f, v, k, h;
+    for (e = 0; e < mesh->edge_count; ++e) gproji_dual_add(mesh, dual, 2 * e, 2);
+    gproji_dual_keep(mesh, dual);
+    for (f = 0; f < mesh->face_count; ++f) {
+        draft->degree[soup->face_count++] = mesh->face_degree[f];
+        for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h])
+            draft->corner[soup->corner_count++] = h / 2;
+    }
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t first = mesh->vertex_halfedge[v], begin = soup->corner_count;
+        if (first < 0) continue;
+        h = first;
+        do { /* at the boundary the first and the last edge are the two along it */
+            h = gproji_rotate(mesh, h);
+            draft->corner[soup->corner_count++] = h / 2;
+        } while (h != first);
+        if (dual->vertex[v] >= 0) draft->corner[soup->corner_count++] = dual->vertex[v];
+        draft->degree[soup->face_count++] = soup->corner_count - begin;
+        if (soup->corner_count - begin < 3)
+            return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, v,
+                               "there is no mesh along the diagonals: inner vertex %d has two edges", v);
+    }
+    gproji_dual_polylines(mesh, dual);
+    return gproji_mesh_build(made, soup, error);
+}
+
+/* Makes the dual or the mesh along the diagonals. */
+GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagonals, int32_t *vertex_face,
+                                             const gproj_host *host, gproj_error *error) {
     gproji_mesh_object *made;
     gproji_dual dual;
     gproji_pool pool;
     gproj_code code;
-    int64_t vertices, edges, faces;
+    int64_t vertices, edges, faces, corners;
     if (!gproji_given(mesh, "mesh", error) ||
         gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
         return NULL;
+    vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
+    corners = 4 * edges + 3 * vertices;
+    if (corners > GPROJI_CORNERS_MAX) {
+        gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                    "the new mesh could have %l corners of faces, and %d are the most; split the mesh", corners,
+                    (int32_t)GPROJI_CORNERS_MAX);
+        return NULL;
+    }
     made = gproji_mesh_begin(host, error);
     if (!made) return NULL;
     gproji_pool_start(&pool, &made->heap);
-    vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
     dual.vertex = gproji_take_ints(&pool, vertices);
     dual.midpoint = gproji_take_ints(&pool, edges);
     dual.seen = gproji_take_ints(&pool, faces);
-    code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
-                             mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
-               ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
-               : gproji_fail_memory(error);
+    if (!gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, faces + vertices, corners,
+                           mesh->polyline_count, mesh->polyline_start[mesh->polyline_count]))
+        code = gproji_fail_memory(error);
+    else if (diagonals)
+        code = gproji_diagonals_build(mesh, &dual, made, error);
+    else
+        code = gproji_dual_build(mesh, &dual, vertex_face, made, error);
     gproji_pool_give_all(&pool);
     return gproji_mesh_done(made, code);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
+                                      gproj_error *error) {
+    return gproji_dual_make(mesh, false, vertex_face, host, error);
+}
+
+GPROJ_API gproj_mesh *gproj_mesh_diagonals(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
+    return gproji_dual_make(mesh, true, NULL, host, error);
 }
 
 /* ============================================================================================================
@@ -22968,10 +23043,10 @@ GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
 
    The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
    equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
-   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes: of flat faces; gproji_tell_angles: of
-   circular ones), and which damage was done on the way (gproji_tell_spoiled). Each gproji_tell_ appends a clause to the
-   sentence, or nothing; gproji_doubt_equilibrium replaces sentence and outcome. They run when a solve has ended, so the
-   system's step and saved x are free for work. */
+   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes, gproji_tell_asymptotic: of flat
+   faces; gproji_tell_angles: of circular ones), and which damage was done on the way (gproji_tell_spoiled). Each
+   gproji_tell_ appends a clause to the sentence, or nothing; gproji_doubt_equilibrium replaces sentence and outcome.
+   They run when a solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -23105,9 +23180,9 @@ GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *he
 /* Planes spread. A flat quad with three corners in a plane, not along a line, lies in that plane. So the plane of a
    face with three held vertices spreads from quad to quad, to each that has three corners in it already; with a
    boundary along a plane curve and a corner that has one face it spreads over all. If it reaches a vertex that is held
-   off it, no flat faces can keep their corners; if it contains a loaded vertex without support and all neighbours, no
-   forces balance a load out of the plane. A vertex that glides is in the plane if the whole side is, from one held
-   vertex to the next. */
+   off it, or one whose side avoids it, no flat faces can keep their corners; if it contains a loaded vertex without
+   support and all neighbours, no forces balance a load out of the plane. A vertex that glides is in the plane if the
+   whole side is, from one held vertex to the next. */
 typedef struct gproji_spread {
     const gproj_form *form;
     const int32_t *kept; /* per vertex: 1 if it is held, -1 if it glides, else 0 */
@@ -23117,8 +23192,8 @@ typedef struct gproji_spread {
     double point[3], normal[3];
     int32_t plane;  /* number of this one, from 1 */
     int32_t count;  /* in the queue */
-    int32_t vertex; /* held, and the farthest off the plane of those that it meets; -1: none is, */
-    double off;     /* and how far */
+    int32_t vertex; /* the farthest off the plane of those that are to be in it, held or on a side that avoids it; */
+    double off;     /* and how far; -1, 0: none */
 } gproji_spread;
 
 static const double gproji_plane_near = 1e-6, gproji_plane_far = 1e-3; /* mean edges; in the plane, and certainly not */
@@ -23133,11 +23208,35 @@ GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v)
     return (gproji_stays(s, v) ? s->value : s->form->original) + 3 * (size_t)v;
 }
 
-/* The distance of a vertex from the plane. */
+/* The height of a vertex above the plane. */
 GPROJI_INTERNAL double gproji_off_plane(const gproji_spread *s, int32_t v) {
     double offset[3];
     gproji_sub3(gproji_place_of(s, v), s->point, offset);
-    return fabs(gproji_dot3(offset, s->normal));
+    return gproji_dot3(offset, s->normal);
+}
+
+/* Finds the side of a vertex that glides, the half-edges from that of one held vertex to that of the next one; around
+   the whole boundary if there is none. Returns the first one; *last: the last one. */
+GPROJI_INTERNAL int32_t gproji_side_of(const gproji_spread *s, int32_t v, int32_t *last) {
+    const gproj_mesh *mesh = s->form->mesh;
+    int32_t start = mesh->vertex_halfedge[v], first = mesh->prev[start];
+    *last = start;
+    while (first != start && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
+    while (mesh->next[*last] != first && !gproji_stays(s, mesh->origin[*last])) *last = mesh->next[*last];
+    return first;
+}
+
+/* Does the side of a vertex that glides meet the plane at most in its held ends? */
+GPROJI_INTERNAL bool gproji_avoids_plane(const gproji_spread *s, int32_t v) {
+    const gproj_mesh *mesh = s->form->mesh;
+    double above = gproji_off_plane(s, v) > 0 ? 1 : -1;
+    int32_t last, first = gproji_side_of(s, v, &last), e;
+    for (e = first;; e = mesh->next[e]) {
+        bool end = gproji_stays(s, mesh->origin[e]);
+        if (!(above * gproji_off_plane(s, mesh->origin[e]) > (end ? -gproji_plane_near : gproji_plane_far)))
+            return false;
+        if (e == last) return true;
+    }
 }
 
 /* Must the vertex be in the plane: a held one by its distance, a gliding one by the whole side, others once
@@ -23147,14 +23246,11 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
     int32_t first, last, e;
     bool in = true;
     if (s->looked[v] == s->plane || s->looked[v] == -s->plane) return s->looked[v] > 0;
-    s->looked[v] = gproji_stays(s, v) && gproji_off_plane(s, v) <= gproji_plane_near ? s->plane : -s->plane;
+    s->looked[v] = gproji_stays(s, v) && fabs(gproji_off_plane(s, v)) <= gproji_plane_near ? s->plane : -s->plane;
     if (s->kept[v] >= 0) return s->looked[v] > 0;
-    /* From one held vertex to the next; around the whole boundary if there is none. */
-    first = mesh->prev[mesh->vertex_halfedge[v]], last = mesh->vertex_halfedge[v];
-    while (first != mesh->vertex_halfedge[v] && !gproji_stays(s, mesh->origin[first])) first = mesh->prev[first];
-    while (mesh->next[last] != first && !gproji_stays(s, mesh->origin[last])) last = mesh->next[last];
+    first = gproji_side_of(s, v, &last);
     for (e = first;; e = mesh->next[e]) {
-        in = in && gproji_off_plane(s, mesh->origin[e]) <= gproji_plane_near;
+        in = in && fabs(gproji_off_plane(s, mesh->origin[e])) <= gproji_plane_near;
         if (e == last) break;
     }
     for (e = last;; e = mesh->prev[e]) {
@@ -23180,24 +23276,26 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
         int32_t v = mesh->origin[h];
         double off;
         if (gproji_is_in_plane(s, v)) continue;
-        if (!gproji_stays(s, v)) {
-            s->looked[v] = s->plane;
-            s->queue[s->count++] = v;
-        } else if (off = gproji_off_plane(s, v), off > gproji_plane_far && off > s->off) {
+        off = fabs(gproji_off_plane(s, v));
+        if ((gproji_stays(s, v) ? off > gproji_plane_far : s->kept[v] < 0 && gproji_avoids_plane(s, v)) && off > s->off)
             s->off = off, s->vertex = v;
-        }
+        if (gproji_stays(s, v)) continue;
+        s->looked[v] = s->plane;
+        s->queue[s->count++] = v;
     }
 }
 
-/* Finds the plane of a face by the places of those that are held or glide, and spreads it as far as it goes. */
+/* Finds the plane of a face by the places of those that are held, or of those that glide, too, if fewer than three are
+   held, and spreads it as far as it goes. */
 GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
     double offset[GPROJI_HELD_MOST][3];
-    int32_t h = mesh->face_halfedge[face], kept = 0, c, head;
+    int32_t h = mesh->face_halfedge[face], kept = 0, held = 0, c, head;
     s->count = 0, s->vertex = -1, s->off = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) held += gproji_stays(s, mesh->origin[h]);
     for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
-        if (s->kept[v] == 0) continue;
+        if (s->kept[v] == 0 || (s->kept[v] < 0 && held >= 3)) continue;
         if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
         gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
     }
@@ -23252,11 +23350,16 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
         loaded = gproji_find_unbearable(s, statics->work);
         if (loaded >= 0) loaded_face = f;
     }
-    if (vertex >= 0)
+    if (vertex >= 0 && gproji_stays(s, vertex))
         gproji_format(result->message + length, sizeof result->message - length,
                       "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
                       "mean edges off it%s: let some of the held vertices go",
                       face, vertex, off, planes > 1 ? ", and others likewise" : "");
+    else if (vertex >= 0)
+        gproji_format(result->message + length, sizeof result->message - length,
+                      "; flat faces that keep their corners share one plane from face %d on, but the side along which "
+                      "vertex %d glides meets it nowhere between held vertices%s: let some of these go",
+                      face, vertex, planes > 1 ? ", and others likewise" : "");
     else if (loaded >= 0)
         gproji_format(result->message + length, sizeof result->message - length,
                       "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
@@ -23347,16 +23450,68 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
         floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
 }
 
+/* Asymptotic directions. The edges of flat quads follow conjugate directions of their surface: edges bend, and faces do
+   not twist. Where edges follow the asymptotic directions of a saddle-shaped surface, such as the straight lines of a
+   hyperbolic paraboloid, it is the other way round. Each of these directions is conjugate to itself alone, so flat
+   faces near such a mesh are thin ones; the directions halfway between them, those of the diagonals, are conjugate. */
+
+/* Does the mesh twist more around an inner vertex with four quads than it bends along its edges? */
+GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, int32_t vertex) {
+    static const double sign[4] = {0.25, -0.25, 0.25, -0.25}, noticeable = 1e-6; /* mean edges */
+    double edge[4][3], diagonal[3], cross[3], normal[3] = {0, 0, 0}, mixed[3] = {0, 0, 0}, bend = 0;
+    const double *at = x + 3 * (size_t)vertex;
+    int32_t h = mesh->vertex_halfedge[vertex], k;
+    /* 1. The mixed difference: the mean of corner - edge - edge over the quads, in which the edges cancel out. */
+    for (k = 0; k < 4; ++k, h = gproji_rotate(mesh, h)) {
+        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], at, edge[k]);
+        gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->prev[mesh->prev[h]]], at, diagonal);
+        gproji_add_scaled3(sign[k], diagonal, mixed);
+    }
+    for (k = 0; k < 4; ++k) {
+        gproji_cross3(edge[(k + 1) % 4], edge[k], cross);
+        gproji_add_scaled3(1, cross, normal);
+    }
+    /* 2. The second differences along both pairs of opposite edges; all across the surface. */
+    for (k = 0; k < 2; ++k) {
+        gproji_add_scaled3(1, edge[k + 2], edge[k]);
+        bend = gproji_fmax(bend, fabs(gproji_dot3(edge[k], normal)));
+    }
+    return fabs(gproji_dot3(mixed, normal)) > gproji_fmax(2 * bend, noticeable * gproji_length3(normal));
+}
+
+/* Says that the edges follow asymptotic directions, if they do nearly everywhere. Returns whether they do. */
+GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
+    const gproj_mesh *mesh = form->mesh;
+    size_t length = strlen(result->message);
+    int32_t inner = 0, twisted = 0, v;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        int32_t start = mesh->vertex_halfedge[v], h = start;
+        bool quads = true;
+        if (start < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        do {
+            quads = quads && mesh->face_degree[mesh->face[h]] == 4;
+            h = gproji_rotate(mesh, h);
+        } while (h != start);
+        ++inner;
+        twisted += quads && gproj_mesh_valence(mesh, v) == 4 && gproji_twists_at(mesh, form->original, v);
+    }
+    if (!(twisted > 0.9 * inner)) return false;
+    gproji_format(result->message + length, sizeof result->message - length,
+                  "; the edges follow asymptotic directions of a saddle-shaped surface, near which flat faces "
+                  "collapse: take the mesh along its diagonals (gproj_mesh_diagonals, --diagonals)");
+    return true;
+}
+
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
-   vertices are held; else a plane that spreads, or angles, if no face has been let go. Returns true in the first case
-   alone: no other attempt can help. */
+   vertices are held; else a plane that spreads and asymptotic directions, or angles, if no face has been let go.
+   Returns true in the first case alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
     int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
     int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
-    bool planar = gproji_is_on(form, form->planarity), whole = planar;
+    bool planar = gproji_is_on(form, form->planarity), whole = planar, known;
     const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
     for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
         int32_t count, f = g->row[r].element;
@@ -23389,7 +23544,8 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
             kept[v] = stays ? 1 : glides ? -1 : 0;
         }
         memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
-        if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
+        known = gproji_tell_planes(&spread, result);
+        if (!gproji_tell_asymptotic(form, result) && !known) gproji_tell_angles(&spread, result);
     }
     return bent > 0;
 }

@@ -106,16 +106,17 @@ static void gprojt_subdivide(gprojt_input *in, const gproj_mesh *mesh, const gpr
 /* Those that are made of a mesh in one call. */
 static void gprojt_derive(gprojt_input *in, const gproj_mesh *mesh, const gproj_host *host) {
     double distance = gprojt_next_number(in, true);
-    int what = gprojt_next(in) % 3;
+    int what = gprojt_next(in) % 4;
     gproj_error error;
     gproj_mesh *made = what == 0   ? gproj_mesh_dual(mesh, NULL, host, &error)
                        : what == 1 ? gproj_mesh_vertex_offset(mesh, distance, host, &error)
+                       : what == 3 ? gproj_mesh_diagonals(mesh, host, &error)
                                    : gproj_mesh_face_offset(mesh, distance, host, &error),
                *panels;
     GPROJT_MUST((made != NULL) == (error.code == GPROJ_OK));
     gprojt_check_error(&error);
     if (made) GPROJT_MUST(!gprojt_validate_mesh(made) && gprojt_all_finite(made->position, 3 * made->vertex_count));
-    if (made && what) {
+    if (made && (what == 1 || what == 2)) {
         gproj_offset_measures m = gproj_measure_offset(mesh, made);
         GPROJT_MUST(made->face_count == mesh->face_count && m.vertex_distance_max >= m.vertex_distance_min);
         panels = gproj_mesh_support(mesh, made, host, &error);

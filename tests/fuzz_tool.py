@@ -18,7 +18,7 @@ OPTIONS = {"planar": "-w", "circular": "-w", "conical": "-w", "equal-lengths": "
            "force-fairness": "-w", "reference": "f", "closeness": "s", "fairness": "s", "boundary-fairness": "s", "tangential": "s",
            "gauss": "s", "parallelograms": "-w", "equal-areas": "-w", "nearest": "-", "plain": "-", "iterations": "i", "tolerance": "n",
            "epsilon": "n", "allow-spoiled": "-", "threads": "i", "quiet": "-", "weld": "-n", "encoding": "o", "lift": "n", "subdivide": "i",
-           "cage": "f", "start-forces": "f", "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "sheet": "h", "panel-scale": "n", "frobnicate": "-n"}
+           "cage": "f", "start-forces": "f", "sides": "v", "view": "e", "colour": "k", "title": "f", "file-limit": "i", "sheet": "h", "panel-scale": "n", "diagonals": "-", "frobnicate": "-n"}
 OUTPUTS = {"report": "out.json", "forces": "out.csv", "picture": "out.svg", "state": "out.state", "support": "panels.obj",
            "panels": "out.dxf", "panel-list": "list.csv"}
 
@@ -133,7 +133,7 @@ def wrong(folder, data, vertices, args, status, out, err):
     lines = after.decode(errors="replace").split("\n")
     points = [line.split()[1:] for line in lines if line.startswith("v ")]
     if not all(len(p) == 3 and all(math.isfinite(float(x)) for x in p) for p in points): return "numbers that are not finite"
-    changed = any(name in " ".join(args) for name in ("--weld", "--subdivide", "--fill"))
+    changed = any(name in " ".join(args) for name in ("--weld", "--diagonals", "--subdivide", "--fill"))
     if not changed and not data.startswith(b"OFF") and len(points) != sum(l.startswith(b"v ") for l in data.split(b"\n")):
         return f"{len(points)} vertices"
     return None

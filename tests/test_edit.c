@@ -1173,6 +1173,80 @@ GPROJT_TEST(dual_with_boundary) {
     gproj_mesh_destroy(mesh);
 }
 
+/* -- the mesh along the diagonals -- */
+
+/* Vertices of valence 4, amid the edges; faces around faces and around vertices, on their sides. */
+GPROJT_TEST(diagonals_of_shapes) {
+    int shape, k;
+    int32_t e, f, h, v, n;
+    for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
+        gprojt_soup s = gprojt_shape(shape, 4);
+        gproj_mesh *mesh = gprojt_soup_mesh(&s, NULL, NULL), *along = gproj_mesh_diagonals(mesh, NULL, NULL);
+        int32_t kept = mesh->edge_count;
+        GPROJT_REQUIRE(along != NULL);
+        GPROJT_CHECK(!gprojt_validate_mesh(along) && gprojt_euler(along) == gprojt_euler(mesh));
+        GPROJT_CHECK(along->loop_count == mesh->loop_count && along->reoriented_count == 0);
+        GPROJT_CHECK(along->face_count == mesh->face_count + mesh->vertex_count);
+        for (e = 0; e < mesh->edge_count; ++e) {
+            const double *a = mesh->position + 3 * mesh->origin[2 * e], *b = mesh->position + 3 * mesh->origin[2 * e + 1];
+            for (k = 0; k < 3; ++k) GPROJT_NEAR(along->position[3 * e + k], (a[k] + b[k]) / 2, 1e-15);
+            if (mesh->face[2 * e + 1] >= 0) GPROJT_CHECK(gproj_mesh_valence(along, e) == 4);
+        }
+        for (f = 0; f < mesh->face_count; ++f) { /* the midpoints of the sides, in their order */
+            GPROJT_CHECK(along->face_degree[f] == mesh->face_degree[f]);
+            for (h = mesh->face_halfedge[f], n = along->face_halfedge[f], k = 0; k < mesh->face_degree[f]; ++k) {
+                GPROJT_CHECK(along->origin[n] == h / 2);
+                h = mesh->next[h], n = along->next[n];
+            }
+        }
+        for (v = 0; v < mesh->vertex_count; ++v) { /* the midpoints of its edges, and the vertex if it is a corner */
+            bool corner = gproj_mesh_is_boundary_vertex(mesh, v) && gproj_mesh_valence(mesh, v) == 2;
+            n = along->face_halfedge[mesh->face_count + v];
+            GPROJT_CHECK(along->face_degree[mesh->face_count + v] >= gproj_mesh_valence(mesh, v) + corner);
+            for (k = 0; k < gproj_mesh_valence(mesh, v); ++k, n = along->next[n]) {
+                e = along->origin[n];
+                GPROJT_CHECK(e < mesh->edge_count && (mesh->origin[2 * e] == v || mesh->origin[2 * e + 1] == v));
+            }
+            if (k == along->face_degree[mesh->face_count + v]) continue;
+            GPROJT_CHECK(k + 1 == along->face_degree[mesh->face_count + v] && along->origin[n] == kept++);
+            GPROJT_CHECK(!memcmp(along->position + 3 * along->origin[n], mesh->position + 3 * v, 3 * sizeof(double)));
+        }
+        GPROJT_CHECK(along->vertex_count == kept);
+        gproj_mesh_destroy(along);
+        gproj_mesh_destroy(mesh);
+        gprojt_soup_free(&s);
+    }
+}
+
+/* A hyperbolic paraboloid's straight lines: no quad between them is flat, all between their midpoints are. Polylines of
+   vertices that stay go with them. */
+GPROJT_TEST(diagonals_of_straight_lines_are_flat) {
+    gprojt_soup s = gprojt_quad_grid(6, 5);
+    gproj_mesh *mesh, *along;
+    gproj_error error;
+    int32_t v;
+    for (v = 0; v < s.vertex_count; ++v) s.position[3 * v + 2] = s.position[3 * v] * s.position[3 * v + 1];
+    mesh = gprojt_soup_mesh(&s, NULL, NULL);
+    along = gproj_mesh_diagonals(mesh, NULL, NULL);
+    GPROJT_REQUIRE(mesh && along);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).planarity_max > 0.01);
+    GPROJT_CHECK(gproj_measure(along, NULL, NULL).planarity_max < 1e-14);
+    GPROJT_CHECK(along->vertex_count == 6 * 6 + 7 * 5 + 4 && along->face_count == 30 + 42);
+    mesh->position[3 * 7] = INFINITY;
+    GPROJT_CHECK(gprojt_mesh_was_refused(gproj_mesh_diagonals(mesh, NULL, &error), &error, GPROJ_ERROR_NUMBER,
+                                         GPROJ_PLACE_VERTEX, 7, "vertex 7"));
+    GPROJT_CHECK(!gproj_mesh_diagonals(NULL, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    gproj_mesh_destroy(along);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(&s);
+    mesh = gprojt_lined_grid();
+    along = gproj_mesh_diagonals(mesh, NULL, NULL);
+    GPROJT_CHECK(along && !gprojt_validate_mesh(along) && along->polyline_count == 1 && along->isolated_count == 2);
+    GPROJT_CHECK(along && !memcmp(along->position + 3 * (along->vertex_count - 2), mesh->position + 36, 48));
+    gproj_mesh_destroy(along);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A mesh of vertices alone is edited into itself, and is its dual. */
 GPROJT_TEST(nothing_but_vertices) {
     static const double position[6] = {0, 1, 2, 3, 4, 5};
@@ -1316,6 +1390,8 @@ GPROJT_TEST(what_would_be_no_mesh_is_refused) {
     mesh = gprojt_edit_mesh(e);
     GPROJT_CHECK(gprojt_mesh_was_refused(gproj_mesh_dual(mesh, NULL, NULL, &error), &error, GPROJ_ERROR_NON_MANIFOLD,
                                          GPROJ_PLACE_FACE, 0, "faces 0 and 1 have more than one edge in common"));
+    GPROJT_CHECK(gprojt_mesh_was_refused(gproj_mesh_diagonals(mesh, NULL, &error), &error, GPROJ_ERROR_NON_MANIFOLD,
+                                         GPROJ_PLACE_VERTEX, 0, "inner vertex 0 has two edges"));
     gproj_mesh_destroy(mesh);
     gproj_edit_destroy(e);
     /* two quads back to back: strips of two quads */
@@ -1457,8 +1533,15 @@ static bool gprojt_use_dual(const gproj_host *host, void *user) {
     return gprojt_mesh_was_made(dual, host, &error);
 }
 
+static bool gprojt_use_diagonals(const gproj_host *host, void *user) {
+    gproj_error error;
+    gproj_mesh *along = gproj_mesh_diagonals((const gproj_mesh *)user, host, &error);
+    return gprojt_mesh_was_made(along, host, &error);
+}
+
 GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh *mesh = gprojt_lined_grid();
+    GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_diagonals, mesh) >= 20);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_edit, mesh) >= 50);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_dual, mesh) >= 20);
     gproj_mesh_destroy(mesh);
@@ -1490,6 +1573,8 @@ int main(void) {
     GPROJT_RUN(triangles_of_the_largest_size);
     GPROJT_RUN(dual_of_the_dual);
     GPROJT_RUN(the_dual_names_the_vertices_given);
+    GPROJT_RUN(diagonals_of_shapes);
+    GPROJT_RUN(diagonals_of_straight_lines_are_flat);
     GPROJT_RUN(dual_with_boundary);
     GPROJT_RUN(nothing_but_vertices);
     GPROJT_RUN(a_large_mesh_made_small);

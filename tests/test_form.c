@@ -1216,6 +1216,80 @@ GPROJT_TEST(planes_that_spread_are_named) {
         }
 }
 
+static double gprojt_bent(double x, double y) { return x * x - y * y + x * y; }
+static double gprojt_flat(double x, double y) { return 1e-7 * x * y; }
+
+/* Edges along the straight lines of a saddle: told, with a remedy that works. Not where edges bend as much as faces twist,
+   nor of a mesh that is almost flat, nor where a fifth of the quads are cut. */
+GPROJT_TEST(asymptotic_directions_are_named) {
+    static double (*const height[3])(double, double) = {gprojt_saddle, gprojt_bent, gprojt_flat};
+    int k;
+    for (k = 0; k < 4; ++k) {
+        gproj_mesh *mesh = gprojt_graph(6, height[k % 3]), *along;
+        gproj_form *form;
+        gproj_result result;
+        if (k == 3) {
+            gproj_edit *edit = gproj_edit_create(mesh, NULL, NULL);
+            int32_t f;
+            for (f = 0; f < 36; f += 5)
+                GPROJT_CHECK(gproj_edit_split_face(edit, f, f / 6 * 7 + f % 6, f / 6 * 7 + f % 6 + 8, NULL) >= 0);
+            gproj_mesh_destroy(mesh);
+            mesh = gproj_edit_mesh(edit, NULL, NULL);
+            gproj_edit_destroy(edit);
+        }
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "asymptotic directions") != NULL) == (k == 0));
+        gproj_form_destroy(form);
+        if (k == 0) {
+            gproj_mesh_destroy(mesh);
+            mesh = gprojt_graph(6, gprojt_saddle);
+            along = gproj_mesh_diagonals(mesh, NULL, NULL);
+            form = gproj_form_create(along, NULL);
+            gproj_add_planarity(form, 1);
+            gproj_add_fixed_boundary(form, 1);
+            result = gproj_solve(form, 20, NULL);
+            GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.spoiled.total == 0 && result.iterations <= 1);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(along);
+        }
+        gproj_mesh_destroy(mesh);
+    }
+}
+
+/* A panel with three held corners, of which the fourth glides: on their plane it is where its side meets that. A side that
+   rises from a held corner and stays above meets it there alone, one that dips below meets it elsewhere. */
+GPROJT_TEST(sides_that_avoid_a_plane_are_named) {
+    static const double rise[4][4] = {{0, 0.1, 0.2, 0.2}, {0, 0.1, -0.2, -0.2}, {0, 0.1, 0.2, -0.2}, {0, -0.1, -0.2, -0.1}};
+    static const int32_t quad[4] = {0, 1, 5, 4}, others[4][3] = {{1, 2, 5}, {2, 6, 5}, {2, 3, 6}, {3, 7, 6}}, held[1] = {5};
+    int k;
+    for (k = 0; k < 4; ++k) {
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        int32_t v;
+        memset(&soup, 0, sizeof soup);
+        for (v = 0; v < 4; ++v) gprojt_add_vertex(&soup, v, 0, rise[k][v]);
+        for (v = 0; v < 4; ++v) gprojt_add_vertex(&soup, v, 1, 0);
+        gprojt_add_face(&soup, 4, quad);
+        for (v = 0; v < 4; ++v) gprojt_add_face(&soup, 3, others[v]);
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_gliding_boundary(form, 1);
+        gproj_add_fixed(form, 1, held, 1);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK((strstr(result.message, "face 0 on, but the side along which vertex 1 glides meets it nowhere") !=
+                      NULL) == (k == 0 || k == 3));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Two quads 0 1 2 3 and 3 2 4 5, of whose vertices all are held but 3: the plane of 0, 1, 2 has 3 in it, and with 2, 3, 4
    the second quad, so that 5 may not be held off it. The plane of the second quad meets no third vertex of the first. */
 static gproj_result gprojt_two_quads(const double fourth[3], const double fifth[3]) {
@@ -3193,6 +3267,8 @@ int main(void) {
     GPROJT_RUN(vertices_of_one_face_are_corners);
     GPROJT_RUN(faces_held_bent_are_named);
     GPROJT_RUN(planes_that_spread_are_named);
+    GPROJT_RUN(asymptotic_directions_are_named);
+    GPROJT_RUN(sides_that_avoid_a_plane_are_named);
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
     GPROJT_RUN(conflicts_at_the_limit);

@@ -416,6 +416,15 @@ run crossed.obj -o kept.obj --fix 0-5 --move 3,0.9,-0.5,0 --picture crossed.svg
 [ $status -eq 1 ] && grep -q '1 face crosses itself (face 0)' out.txt && grep -q 'bow-ties: cross themselves' crossed.svg && pass ||
     fail "a new bow-tie: $status, $(sed -n 2p out.txt)"
 
+# Edges along the straight lines of a saddle: flat faces would collapse, and the advice works.
+awk 'BEGIN { for (j = 0; j <= 8; ++j) for (i = 0; i <= 8; ++i) print "v", i, j, (i - 4) * (j - 4) / 8
+    for (j = 0; j < 8; ++j) for (i = 1; i <= 8; ++i) print "f", j * 9 + i, j * 9 + i + 1, j * 9 + i + 10, j * 9 + i + 9 }' >straight.obj
+run straight.obj -o flat.obj --planar --fix boundary
+[ $status -eq 1 ] && grep -q 'edges follow asymptotic directions.*--diagonals' out.txt && pass || fail "a saddle: exit $status, $(sed -n 2p out.txt)"
+run straight.obj -o flat.obj --planar --fix boundary --diagonals
+[ $status -eq 0 ] && [ "$(counts flat.obj)" = "148 145" ] && grep -q 'displacement *[0-9.]*e-1[5-9]\|displacement *0 ' out.txt && pass ||
+    fail "--diagonals: exit $status, $(counts flat.obj), $(sed -n 2,4p out.txt)"
+
 # Seams: every face with vertices of its own is told, and closed by --weld.
 awk '/^v / { x[++n] = $0; next } /^f / { for (k = 2; k <= NF; k++) { print x[$k]; list = list " " ++m }; f = f "f" list "\n"; list = "" }
     END { printf "%s", f }' grid.obj >soup.obj

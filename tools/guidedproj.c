@@ -146,7 +146,7 @@ typedef struct tool {
     gprojx_view view;
     const struct tool_colour *colour; /* of the faces in the picture; NULL: planarity */
     const char *title;                /* of the picture; NULL: the name of the output */
-    bool nearest, plain, allow_spoiled, quiet, help, version;
+    bool diagonals, nearest, plain, allow_spoiled, quiet, help, version;
     bool seen[MOST_OPTIONS]; /* by row */
     tool_word *word;         /* in the order in which they were read */
     int32_t word_count;
@@ -1205,6 +1205,15 @@ static bool treat_seams(tool *t) {
     return good;
 }
 
+/* Makes the mesh along the diagonals. */
+static bool take_diagonals(tool *t) {
+    gproj_error error;
+    gproj_mesh *old = t->mesh;
+    t->mesh = gproj_mesh_diagonals(old, &t->host, &error);
+    gproj_mesh_destroy(old);
+    return t->mesh || fail_library(t, t->input, &error);
+}
+
 /* Makes the mesh from which the work begins. */
 static bool make_mesh(tool *t) {
     if (t->fill) {
@@ -1215,6 +1224,7 @@ static bool make_mesh(tool *t) {
         if (t->mesh->face_count == 0) return fail(t, EXIT_REFUSED, "%s: the mesh has no faces", t->input);
         if (!treat_seams(t)) return false;
     }
+    if (t->diagonals && !take_diagonals(t)) return false;
     if (t->subdivision.levels > 0 && !(t->cage ? follow_cage(t) : subdivide(t))) return false;
     return check_pulls(t) && (fabs(t->lift) <= 0 || lift(t));
 }
@@ -1631,6 +1641,10 @@ static const tool_option options[] = {
     {"sides", "N,N,...",
      "the numbers of edges of the curve's sides, from corner to corner (by its mean edge if left out)", set_sides,
      SETS(sides), .needs = &a_curve},
+    {"diagonals", "",
+     "the mesh along the diagonals: a vertex amid each edge, a face for each face and for each vertex; for meshes whose "
+     "edges follow the asymptotic directions of a saddle-shaped surface, in which faces cannot become flat",
+     set_flag, SETS(diagonals), .kind = BEGINNING},
     {"subdivide", "N[,loop]",
      "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
      "triangle four (Loop). The cage's vertices keep their numbers",

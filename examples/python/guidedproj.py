@@ -230,6 +230,7 @@ int32 edit_triangulate(pointer, int32, pointer)
 int32 edit_insert_strip(pointer, int32, double, pointer)
 int32 edit_remove_strip(pointer, int32, double, pointer)
 pointer mesh_dual(pointer, pointer, pointer, pointer)
+pointer mesh_diagonals(pointer, pointer, pointer)
 pointer mesh_subdivide(pointer, pointer, pointer, pointer, pointer)
 void stencil_destroy(pointer)
 memory stencil_memory(pointer)
@@ -953,6 +954,10 @@ class Mesh(_Object):
         """The dual mesh and, for each vertex, its face there or -1 (gproj_mesh_dual)."""
         face = np.empty(self.vertex_count, np.int32)
         return Mesh._make("gproj_mesh_dual", self._c, face.ctypes, host=host), face
+
+    def diagonals(self, host=None):
+        """The mesh along the diagonals: a vertex amid each edge, a face for each face and vertex (gproj_mesh_diagonals)."""
+        return Mesh._make("gproj_mesh_diagonals", self._c, host=host)
 
     def subdivide(self, levels=1, scheme=Scheme.CATMULL_CLARK, creases=None, sharpness=None, corners=None,
                   round_corners=False, stencil_level=0, host=None):
