@@ -409,13 +409,17 @@ const tests = {
         }
         check(new Set(changed).size === 4 && new Set(said).size === 4, 'some colours look alike:', changed, said);
     },
-    /* A cage is subdivided, a curve is filled. */
+    /* A cage is subdivided, edges become those along diagonals, a curve is filled. */
     async cages_and_curves() {
         await open('#mesh=Cage&planar=1&fairness=0.1');
         await run(() => { document.body.dataset.mesh = ''; });
         await click('#subdivide');
         await until(() => document.body.dataset.mesh === 'cage_fine.obj', 'the subdivided cage');
         check(await run(() => mesh.faces) === 32, 'the subdivided cage has', await run(() => mesh.faces));
+        await run(() => { document.body.dataset.mesh = ''; });
+        await click('#diagonals');
+        await until(() => document.body.dataset.mesh === 'cage_diagonals.obj', 'the mesh along the diagonals');
+        check(await run(() => mesh.faces) === 32 + 45, 'the mesh along the diagonals has', await run(() => mesh.faces));
         const ring = path.join(work, 'ring.obj');
         fs.writeFileSync(ring,
             Array.from({length: 24}, (_, k) => `v ${Math.cos(k * Math.PI / 12)} ${Math.sin(k * Math.PI / 12)} 0\n`)

@@ -195,13 +195,20 @@ static void lift(gproj_mesh *mesh, double height) {
     gproj_form_destroy(form);
 }
 
-/* Reads the text in the block; then a curve is filled, a cage is subdivided and a plan is lifted. */
-static gproj_mesh *read(size_t size, int32_t corners, int32_t levels, double height, gproj_error *error) {
+/* Reads the text in the block; then a curve is filled, the mesh along the diagonals taken, a cage subdivided, a plan
+   lifted. */
+static gproj_mesh *read(size_t size, int32_t corners, bool diagonals, int32_t levels, double height,
+                        gproj_error *error) {
     gproj_mesh *mesh = gproj_mesh_read(page.block, size, GPROJ_FORMAT_DETECT, &host, error);
     if (mesh && mesh->face_count == 0 && mesh->polyline_count > 0) {
         gproj_mesh *filled = fill(mesh, corners, error);
         gproj_mesh_destroy(mesh);
         mesh = filled;
+    }
+    if (mesh && diagonals) {
+        gproj_mesh *along = gproj_mesh_diagonals(mesh, &host, error);
+        gproj_mesh_destroy(mesh);
+        mesh = along;
     }
     if (mesh && levels > 0) {
         gproj_subdivide_options options = {.levels = levels};
@@ -215,9 +222,9 @@ static gproj_mesh *read(size_t size, int32_t corners, int32_t levels, double hei
 
 /* Opens the text of `size` bytes in the block, OBJ or OFF; see read(). False: page_sentence says why, and the mesh
    before stays. */
-bool EXPORT(page_open) page_open(size_t size, int32_t corners, int32_t levels, double height) {
+bool EXPORT(page_open) page_open(size_t size, int32_t corners, bool diagonals, int32_t levels, double height) {
     gproj_error error;
-    gproj_mesh *mesh = read(size, corners, levels, height, &error);
+    gproj_mesh *mesh = read(size, corners, diagonals, levels, height, &error);
     double *original, *fixed_at, *before, *is_fixed;
     if (!mesh) return refuse(error.message);
     original = malloc(3 * sizeof *original * (size_t)mesh->vertex_count);

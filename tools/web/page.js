@@ -298,8 +298,8 @@ const answers = {
 
 let memorySize = 0; // of the worker's instance, in bytes
 
-/* source: bytes, which are taken away, or a file, which the worker reads; more: {item, corners, levels, lift, fix}, see
-   worker.js. The page keeps its mesh until the worker has read the new one, which may be refused. */
+/* source: bytes, which are taken away, or a file, which the worker reads; more: {item, corners, diagonals, levels,
+   lift, fix}, see worker.js. The page keeps its mesh until the worker has read the new one, which may be refused. */
 function open(name, source, preset = null, more = {}) {
     if (preset) setWeights(preset);
     const settings = weights.map((w, k) => [k, w]), file = source instanceof Blob;
@@ -332,10 +332,11 @@ function choose(name, preset = null) {
         {item: chosen.name, corners, levels, lift, fix});
 }
 
-async function subdivide() {
+/* Opens a mesh made of this one; more: how, see worker.js. */
+async function remake(ending, more) {
     const bytes = await writeMesh();
     if (mesh.faces > 20000) return say('That would be more than a page can show.', 'bad');
-    open(opened.name.replace(/(_fine)*\.\w+$/, '') + '_fine.obj', bytes, null, {levels: 1});
+    open(opened.name.replace(/(_fine|_diagonals)*\.\w+$/, '') + ending, bytes, null, more);
 }
 
 function showItem() {
@@ -958,7 +959,8 @@ function makeControls() {
     $('fix').onclick = toggleFixed;
     $('fit').onclick = fit;
     $('free').onclick = freeAll;
-    $('subdivide').onclick = subdivide;
+    $('subdivide').onclick = () => remake('_fine.obj', {levels: 1});
+    $('diagonals').onclick = () => remake('_diagonals.obj', {diagonals: true});
     $('reach').oninput = showReach;
     showReach();
     $('colour').onchange = () => setColour($('colour').value);

@@ -68,7 +68,7 @@ function postVerdict(after) {
         iterations: wasm.page_iterations(), named});
 }
 
-/* `text`: the mesh as it was opened, or as OBJ where a curve was filled or a cage subdivided. */
+/* `text`: the mesh as it was opened, or as OBJ where a curve was filled or a mesh made of another. */
 function postMesh(name, item, text) {
     const vertices = wasm.page_vertices(), faces = wasm.page_faces(), edges = wasm.page_edges();
     const triangles = wasm.page_topology(), at = wasm.page_block(0);
@@ -188,15 +188,15 @@ const does = {
         module = new WebAssembly.Module(bytes);
         instantiate();
     },
-    /* item: its name in the gallery; corners, levels, lift: see page_open; fix: the vertices that are fixed. */
-    open({source, name, item = '', settings, corners = 0, levels = 0, lift = 0, fix = []}) {
+    /* item: its name in the gallery; corners, diagonals, levels, lift: see page_open; fix: vertices that are fixed. */
+    open({source, name, item = '', settings, corners = 0, diagonals = false, levels = 0, lift = 0, fix = []}) {
         const text = new Uint8Array(source instanceof Blob ? new FileReaderSync().readAsArrayBuffer(source) : source);
         if (!give(text)) return postMessage({is: 'error', sentence: 'there is not enough memory'});
-        if (!wasm.page_open(text.byteLength, corners, levels, lift))
+        if (!wasm.page_open(text.byteLength, corners, diagonals, levels, lift))
             return postMessage({is: 'error', sentence: `The file ${name} was not opened: ${sentence()}`});
         activity = 'none', undo = [], redo = [];
-        const other = isCurve(text) || levels || lift ? written(false) : undefined;
-        if (other && give(other)) wasm.page_open(other.length, 0, 0, 0); // exactly as who saves it will open it
+        const other = isCurve(text) || diagonals || levels || lift ? written(false) : undefined;
+        if (other && give(other)) wasm.page_open(other.length, 0, false, 0, 0); // exactly as who saves it will open it
         opened = {text: other ?? text, settings: opened?.settings ?? [], fixed: new Set(fix)};
         if (settings) does.set({settings});
         for (const vertex of fix) wasm.page_fix(vertex, true);
@@ -284,7 +284,7 @@ function recover(error) {
     does.set({settings: opened.settings});
     wasm.page_tell(chosen.tell);
     wasm.page_epsilon(chosen.epsilon);
-    if (!give(opened.text) || !wasm.page_open(opened.text.byteLength, 0, 0, 0)) return;
+    if (!give(opened.text) || !wasm.page_open(opened.text.byteLength, 0, false, 0, 0)) return;
     restore(opened.snapshot);
     for (const vertex of opened.fixed) wasm.page_fix(vertex, true);
     setFrames(frameSize);
