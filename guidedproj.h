@@ -6115,25 +6115,24 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 
 /* -- analysis -- */
 
-/* Analyses a graph, and prepares the permutation and the pieces of scattering. Node i has the columns
-   member[member_start[i]..]; without `member` these numbers themselves. The options give no order. False: no memory. */
-GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
-                                                   const gproj_cholesky_options *options, const int32_t *member_start,
-                                                   const int32_t *member) {
+/* Analyses a graph whose nodes weigh `columns` altogether, and prepares the permutation and the pieces of scattering.
+   `member` lists the first node's columns, then the second's; NULL: in ascending order. The options give no order.
+   False: no memory. */
+GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph, int32_t columns,
+                                                   const gproj_cholesky_options *options, const int32_t *member) {
     const gproji_symbolic *sy = &c->symbolic;
     int64_t most = 0, *start;
     int32_t f, k, i, at = 0;
-    if (!gproji_analyse(&c->kept, graph, member_start[graph->nodes], options, c->parallel.run != NULL, &c->symbolic))
-        return false;
+    if (!gproji_analyse(&c->kept, graph, columns, options, c->parallel.run != NULL, &c->symbolic)) return false;
     for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
         most += 2 * sy->front[f].row_nodes + sy->front[f].below / GPROJI_BLOCK + 2; /* see gproji_find_pieces */
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
     if (c->kept.failed) return false;
-    for (k = 0; k < sy->nodes; ++k)
-        for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
-            c->permutation[at++] = member ? member[i] : i;
+    for (i = 0; i < sy->nodes; ++i)
+        for (k = 0; k < graph->weight[i]; ++k, ++at)
+            c->permutation[sy->column[sy->position[i]] + k] = member ? member[at] : at;
     /* Rows that kernels add to the parent's panel in one go: see gproji_find_pieces. */
     start[0] = 0;
     for (f = 0; f < sy->fronts; ++f) {
@@ -6161,33 +6160,22 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph
-   (see gproji_graph). The options give no order. */
-GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
-                                                          const int32_t *node_size, const int64_t *adjacency_start,
-                                                          const int32_t *adjacency,
-                                                          const gproj_cholesky_options *options) {
+/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables. */
+GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, const gproji_graph *graph,
+                                                          gproj_ordering ordering) {
     gproj_cholesky_options choice;
-    gproji_graph graph;
-    int32_t i, *start, columns = 0;
+    int32_t i, columns = 0;
     memset(&choice, 0, sizeof choice);
-    if (options) choice = *options;
+    choice.ordering = ordering;
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
-    for (i = 0; i < node_count; ++i) {
-        if (node_size[i] > GPROJI_COLUMNS_MAX - columns)
+    for (i = 0; i < graph->nodes; ++i) {
+        if (graph->weight[i] > GPROJI_COLUMNS_MAX - columns)
             return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                                "the matrix would have more than %d columns", (int32_t)GPROJI_COLUMNS_MAX);
-        columns += node_size[i];
+        columns += graph->weight[i];
     }
-    graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
-    start = (int32_t *)gproji_take(&c->heap, (size_t)node_count + 1, sizeof(int32_t));
-    if (start) {
-        start[0] = 0;
-        for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        c->analysed = gproji_cholesky_analyse_graph(c, &graph, &choice, start, NULL);
-        gproji_give(&c->heap, start, (size_t)node_count + 1, sizeof(int32_t));
-    }
+    c->analysed = gproji_cholesky_analyse_graph(c, graph, columns, &choice, NULL);
     if (c->analysed) return GPROJ_OK;
     gproji_cholesky_forget(c);
     return gproji_fail_memory(&c->error);
@@ -6197,28 +6185,27 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
 typedef struct gproji_compression {
     gproji_pool pool;
     int32_t n;
-    int64_t *start;     /* n + 1: each column's neighbours, */
-    int32_t *neighbour; /* without the diagonal and without repetition */
-    uint32_t *hash;     /* n: a sum over the column and the neighbours */
-    int32_t *mark;      /* n */
-    int32_t *order;     /* n: the order to keep, or NULL */
-    int32_t *node_of;   /* n: each column's node, or -1 */
-    int32_t *member;    /* n: each node's columns */
-    int32_t *member_start;
-    gproji_graph graph; /* the nodes' */
+    int64_t *start;       /* n + 1: each column's neighbours, */
+    int32_t *neighbour;   /* without the diagonal and without repetition */
+    uint32_t *hash;       /* n: a sum over the column and the neighbours */
+    int32_t *mark;        /* n */
+    bool keep;            /* nodes must not change the order */
+    const int32_t *order; /* n: the order to keep; NULL: the natural one */
+    int32_t *node_of;     /* n: each column's node, or -1 */
+    int32_t *member;      /* n: the first node's columns, then the second's */
+    gproji_graph graph;   /* the nodes' */
 } gproji_compression;
 
-/* Finds the neighbours in both triangles, and the order to keep if the options ask for one. */
+/* Finds the neighbours in both triangles, and checks the order to keep if the options give one. */
 GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const int64_t *start, const int32_t *row,
                                                     const gproj_cholesky_options *options, gproj_error *error) {
-    bool given = options->ordering == GPROJ_ORDERING_GIVEN, natural = options->ordering == GPROJ_ORDERING_NATURAL;
+    bool given = options->ordering == GPROJ_ORDERING_GIVEN;
     int32_t n = x->n, j, k;
     int64_t p, q, to = 0;
     x->start = (int64_t *)gproji_pool_take_zeroed(&x->pool, (int64_t)n + 2, sizeof(int64_t));
     x->neighbour = gproji_take_ints(&x->pool, 2 * (n ? start[n] : 0));
     x->hash = (uint32_t *)gproji_pool_take(&x->pool, n, sizeof(uint32_t));
     x->mark = gproji_take_ints(&x->pool, n);
-    x->order = given || natural ? gproji_take_ints(&x->pool, n) : NULL;
     if (x->pool.failed) return gproji_fail_memory(error);
     /* 1. Counting sort: start[j + 1] is where column j's next neighbour goes. */
     for (j = 0; j < n; ++j)
@@ -6249,15 +6236,17 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     }
     x->start[n] = to;
     /* 3. The order to keep. */
+    x->keep = given || options->ordering == GPROJ_ORDERING_NATURAL;
+    x->order = given ? options->permutation : NULL;
+    if (n > 0 && given && !x->order) return gproji_refuse(error, "the order to keep is missing");
     for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
     for (k = 0; x->order && k < n; ++k) {
-        j = given ? (options->permutation ? options->permutation[k] : -1) : k;
-        if (given && !options->permutation) return gproji_refuse(error, "the order to keep is missing");
+        j = x->order[k];
         if (j < 0 || j >= n || x->mark[j] >= 0)
             return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, k,
                                "the order given is no permutation: entry %d is %d, %s", k, j,
                                j < 0 || j >= n ? "which is no column" : "as an earlier one is");
-        x->mark[j] = x->order[k] = j;
+        x->mark[j] = j;
     }
     return GPROJ_OK;
 }
@@ -6277,7 +6266,6 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     int64_t p, to = 0, *start;
     x->node_of = gproji_take_ints(&x->pool, n);
     x->member = gproji_take_ints(&x->pool, n);
-    x->member_start = gproji_take_ints(&x->pool, (int64_t)n + 1);
     weight = gproji_take_ints(&x->pool, n);
     adjacent = gproji_take_ints(&x->pool, x->start[n]);
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
@@ -6287,30 +6275,25 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     for (k = 0; k < n; ++k) {
         j = x->order ? x->order[k] : k;
         if (x->node_of[j] >= 0) continue;
-        if (x->order && first >= 0 && gproji_compression_same(x, first, j)) {
-            x->node_of[j] = nodes - 1;
-            x->member[at++] = j;
-            continue;
+        if (!x->keep || first < 0 || !gproji_compression_same(x, first, j)) {
+            first = x->mark[j] = j;
+            for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
+            weight[nodes++] = 0;
         }
-        first = j;
-        x->member_start[nodes] = at;
-        x->node_of[j] = nodes++;
+        x->node_of[j] = nodes - 1;
         x->member[at++] = j;
-        x->mark[j] = j;
-        for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
-        for (p = x->start[j]; !x->order && p < x->start[j + 1]; ++p) {
+        for (p = x->start[j]; !x->keep && p < x->start[j + 1]; ++p) {
             i = x->neighbour[p];
             if (x->node_of[i] >= 0 || !gproji_compression_same(x, j, i)) continue;
             x->node_of[i] = nodes - 1;
             x->member[at++] = i;
         }
     }
-    x->member_start[nodes] = at;
+    for (j = 0; j < n; ++j) weight[x->node_of[j]]++;
     /* 2. A node's neighbours are the first member's. */
     for (k = 0; k < n; ++k) x->mark[k] = -1;
-    for (k = 0; k < nodes; ++k) {
-        j = x->member[x->member_start[k]];
-        weight[k] = x->member_start[k + 1] - x->member_start[k];
+    for (k = 0, at = 0; k < nodes; at += weight[k++]) {
+        j = x->member[at];
         start[k] = to;
         for (p = x->start[j]; p < x->start[j + 1]; ++p) {
             i = x->node_of[x->neighbour[p]];
@@ -6409,9 +6392,9 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     code = gproji_compression_begin(&x, start, row, &choice, &c->error);
     if (choice.ordering == GPROJ_ORDERING_GIVEN)
         choice.ordering = GPROJ_ORDERING_NATURAL; /* nodes come in this order */
-    if (code == GPROJ_OK && !(gproji_compression_merge(&x) &&
-                              gproji_cholesky_analyse_graph(c, &x.graph, &choice, x.member_start, x.member) &&
-                              gproji_cholesky_place_entries(c, &x, start, row)))
+    if (code == GPROJ_OK &&
+        !(gproji_compression_merge(&x) && gproji_cholesky_analyse_graph(c, &x.graph, n, &choice, x.member) &&
+          gproji_cholesky_place_entries(c, &x, start, row)))
         code = gproji_fail_memory(&c->error);
     gproji_pool_give_all(&x.pool);
     if (code != GPROJ_OK) gproji_cholesky_forget(c);
@@ -8756,6 +8739,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
     size_t room = 0, filled = 0;
     int64_t *start;
     int32_t *size, *adjacent = NULL, v;
+    gproji_graph graph;
     gproji_pool pool;
     bool done;
     gproji_pool_start(&pool, &s->heap);
@@ -8785,8 +8769,11 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
         }
     }
     gproji_pool_give_all(&in->pool); /* before the analysis, which needs much memory itself */
-    if (done) start[nodes] = (int64_t)filled;
-    if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
+    if (done) {
+        start[nodes] = (int64_t)filled;
+        graph.nodes = nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = size;
+        code = gproji_cholesky_analyse_blocks(s->cholesky, &graph, GPROJ_ORDERING_BEST);
+    }
     gproji_give(&s->heap, adjacent, room, sizeof *adjacent);
     gproji_pool_give_all(&pool);
     return code;

@@ -300,13 +300,10 @@ static double naive_flops(const graph *g, const int32_t *order) {
 /* The analysis with one of the orderings; the order of the nodes, if wanted. */
 static gproj_cholesky_info analysed(const graph *g, gproj_ordering ordering, int32_t *order) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
-    gproj_cholesky_options options;
     gproj_cholesky_info info;
     memset(&info, 0, sizeof info);
-    memset(&options, 0, sizeof options);
-    options.ordering = ordering;
     if (!c) return info;
-    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, g->nodes, g->weight, g->start, g->adjacent, &options) == GPROJ_OK);
+    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &g->view, ordering) == GPROJ_OK);
     info = gproj_cholesky_get_info(c);
     if (order && g->nodes > 0) memcpy(order, c->symbolic.order, (size_t)g->nodes * sizeof(int32_t));
     gproj_cholesky_destroy(c);
@@ -901,7 +898,7 @@ static bool analyse_with(const gproj_host *host, void *user) {
     const graph *g = (const graph *)user;
     gproj_cholesky *c = gproj_cholesky_create(host);
     gproj_code code = GPROJ_ERROR_MEMORY;
-    if (c) code = gproji_cholesky_analyse_blocks(c, g->nodes, g->weight, g->start, g->adjacent, NULL);
+    if (c) code = gproji_cholesky_analyse_blocks(c, &g->view, GPROJ_ORDERING_BEST);
     GPROJT_CHECK(code == GPROJ_OK || code == GPROJ_ERROR_MEMORY);
     if (code == GPROJ_OK) GPROJT_CHECK(is_permutation(g->nodes, c->symbolic.order));
     gproj_cholesky_destroy(c);
