@@ -5416,7 +5416,8 @@ typedef struct gproji_analysis {
     /* by supernode: */
     int32_t supernodes;
     int32_t *head, *tail; /* first and last position in the chain */
-    int32_t *width, *below, *below_nodes;
+    int32_t *width;       /* 0: has joined an ancestor */
+    int32_t *below, *below_nodes;
     int32_t *super_parent, *child, *sibling;
 } gproji_analysis;
 
@@ -5627,9 +5628,7 @@ GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
 
 /* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
 GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
-    int32_t n = an->graph->nodes, k, p, s = -1, kept = 0, *super_of = an->a;
-    int32_t *joined = an->b;                /* 1: has joined an ancestor */
-    int32_t *into = an->c, *number = an->d; /* the supernode that s has become; the new number */
+    int32_t n = an->graph->nodes, k, p, s = -1, *super_of = an->a;
     /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
@@ -5654,7 +5653,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     }
     if (!relax) return;
     /* 2. Relaxation: children join their parents if that is cheaper, although it puts zeros into the factor. */
-    for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
+    for (p = 0; p < an->supernodes; ++p) an->child[p] = -1;
     for (p = 0; p < an->supernodes; ++p) { /* children come before parents: p's are final */
         int32_t *link = &an->child[p];
         double cost = gproji_front_cost(an->width[p], an->below[p]);
@@ -5666,8 +5665,8 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
                 continue;
             }
             cost = both;
-            joined[c] = 1;
             an->width[p] = width;
+            an->width[c] = 0;
             an->chain[an->tail[c]] = an->head[p];
             an->head[p] = an->head[c];
             *link = an->child[c]; /* grandchildren replace c in the list: they are candidates too */
@@ -5679,20 +5678,11 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
             an->child[an->super_parent[p]] = p;
         }
     }
-    /* 3. The supernodes that are left get new numbers in the same order. */
-    for (s = an->supernodes - 1; s >= 0; --s) into[s] = joined[s] ? into[an->super_parent[s]] : s;
-    for (s = 0; s < an->supernodes; ++s) {
-        number[s] = kept;
-        if (!joined[s]) kept++;
+    /* 3. Parents that have joined others give way to these: parents come last, so theirs are final. */
+    for (s = an->supernodes - 1; s >= 0; --s) {
+        int32_t up = an->super_parent[s];
+        if (up >= 0 && an->width[up] == 0) an->super_parent[s] = an->super_parent[up];
     }
-    for (s = 0; s < an->supernodes; ++s) {
-        int32_t up = an->super_parent[s], to = number[s];
-        if (joined[s]) continue; /* to <= s: all that is overwritten has moved already */
-        an->super_parent[to] = up < 0 ? -1 : number[into[up]];
-        an->head[to] = an->head[s], an->tail[to] = an->tail[s];
-        an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
-    }
-    an->supernodes = kept;
 }
 
 /* Turns supernodes into fronts, and renumbers them and the positions by postorder unless the order must be kept. */
@@ -5703,11 +5693,15 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
-    gproji_invert(count, sequence, number);
-    out->fronts = count;
-    out->front = (gproji_front *)gproji_pool_take_zeroed(an->keep, count, sizeof(gproji_front));
+    for (k = 0; k < count; ++k) {
+        int32_t s = sequence[k];
+        if (an->width[s] == 0) continue;
+        number[s] = out->fronts;
+        sequence[out->fronts++] = s;
+    }
+    out->front = (gproji_front *)gproji_pool_take_zeroed(an->keep, out->fronts, sizeof(gproji_front));
     if (!out->front) return false;
-    for (f = 0; f < count; ++f) {
+    for (f = 0; f < out->fronts; ++f) {
         int32_t s = sequence[f], up = an->super_parent[s];
         gproji_front *front = &out->front[f];
         gproji_shape shape = gproji_shape_of(an->width[s], an->below[s]);
@@ -5734,7 +5728,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
-    for (f = count - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
+    for (f = out->fronts - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
         front->sibling = out->front[front->parent].child;
