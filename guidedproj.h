@@ -3663,32 +3663,23 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* The extend-add of a child's update matrix, with `rows` rows. */
-typedef struct gproji_addition {
-    const gproji_panel *panel; /* the parent's */
-    const gproji_piece *piece;
-    int32_t pieces;
-    const double *update;
-    int32_t rows;
-} gproji_addition;
-
-/* Extend-adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
-GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from, int32_t to) {
-    const gproji_panel *panel = add->panel;
-    int32_t first = 0, last = add->pieces;
+/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage rows
+   [from, to), which are ends of pieces. */
+GPROJI_INTERNAL void gproji_add_columns(const gproji_panel *parent, const gproji_piece *piece, int32_t pieces,
+                                        const double *update, int32_t rows, int32_t from, int32_t to) {
+    int32_t first = 0, last = pieces;
     while (first < last) { /* find the first piece from there on */
         int32_t middle = first + (last - first) / 2;
-        if (add->piece[middle].to < from)
+        if (piece[middle].to < from)
             first = middle + 1;
         else
             last = middle;
     }
-    for (; first < add->pieces && add->piece[first].to < to; ++first) {
-        const gproji_piece *piece = add->piece + first;
-        int32_t column = piece->from, strip = gproji_strip_begin(column);
-        panel->kernels->add(piece, add->pieces - first, add->update + gproji_update_offset(add->rows, column),
-                            add->rows - strip, strip + GPROJI_STRIP - column, gproji_panel_column(panel, piece->to),
-                            gproji_column_stride(panel, piece->to));
+    for (; first < pieces && piece[first].to < to; ++first) {
+        int32_t column = piece[first].from, strip = gproji_strip_begin(column), at = piece[first].to;
+        parent->kernels->add(piece + first, pieces - first, update + gproji_update_offset(rows, column), rows - strip,
+                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, at),
+                             gproji_column_stride(parent, at));
     }
 }
 
@@ -6486,10 +6477,9 @@ GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     }
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
-        gproji_addition add;
-        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
-        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        gproji_add_columns(&add, from, to);
+        int64_t first = c->piece_start[i];
+        gproji_add_columns(panel, c->piece + first, (int32_t)(c->piece_start[i + 1] - first), c->values + child->update,
+                           child->update_rows, from, to);
     }
 }
 
