@@ -4348,21 +4348,21 @@ typedef struct gproji_nd_cut {
 
 /* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
    joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
-   limit. Each unit in a node stores the neighbour it comes from, which is all that augmentation needs. */
+   limit. The residual network has the same arcs as long as they have room, and the opposite ones where units flow. */
 typedef struct gproji_band {
     int32_t nodes;
-    int32_t *id;         /* nodes: index in the part */
-    int32_t *start;      /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
-    int32_t *unit;       /* nodes + 1: room for units unit[i]..unit[i + 1] - 1, */
-    int32_t *load;       /* nodes: of which the first `load` are in use */
-    int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
-    int32_t *turn;       /* states: the next step to try; see gproji_band_next */
-    int32_t *queue;      /* states; also the path that is searched */
-    int32_t *to;         /* arcs: the neighbour */
-    int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
-    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
-    unsigned char *mark; /* states: GPROJI_BAND_... */
-    void *block;         /* all these arrays */
+    int32_t *id;             /* nodes: index in the part */
+    int32_t *start;          /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
+    int32_t *capacity;       /* nodes: units that can pass, */
+    int32_t *load;           /* and those that do */
+    int32_t *level;          /* states: steps in the last search; -1: not reached, or no more in this round */
+    int32_t *turn;           /* states: the next arc to try */
+    int32_t *queue;          /* states; also the path that is searched */
+    int32_t *to;             /* arcs: the neighbour */
+    unsigned char *out, *in; /* arcs: units that flow to the neighbour, and that come from it */
+    unsigned char *ends;     /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
+    unsigned char *mark;     /* states: GPROJI_BAND_... */
+    void *block;             /* all these arrays */
     size_t block_size;
 } gproji_band;
 
@@ -4776,127 +4776,89 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
 
 /* -- the flow through a band -- */
 
-GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
-    return band->load[v] < band->unit[v + 1] - band->unit[v];
+/* Can more flow between node v's own states, from the exit to the entry or the other way round? */
+GPROJI_INLINE bool gproji_band_is_open(const gproji_band *band, int32_t v, bool from_exit) {
+    return from_exit ? band->load[v] > 0 : band->load[v] < band->capacity[v];
 }
 
 /* Appends a state without a level to a queue with `tail` entries; returns the new number. */
-GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
+GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
     if (band->level[s] >= 0) return tail;
     band->level[s] = level;
     band->queue[tail] = s;
     return tail + 1;
 }
 
-/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
-   or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
-   turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
-GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
-    const int32_t *level = band->level;
-    int32_t v = s >> 1, c = band->turn[s], nearer = level[s] - 1, end, next = -1;
-    if (s & 1) {
-        for (end = band->start[v + 1]; c < end && level[2 * band->to[c]] != nearer; ++c) continue;
-        if (c < end)
-            next = 2 * band->to[c];
-        else if (band->load[v] > 0 && level[2 * v] == nearer)
-            next = 2 * v;
-    } else {
-        if (c < band->unit[v]) {
-            if (gproji_band_has_room(band, v) && level[s + 1] == nearer) return s + 1;
-            ++c;
-        }
-        for (end = band->unit[v] + band->load[v]; c < end; ++c)
-            if (band->origin[c] >= 0 && level[2 * band->origin[c] + 1] == nearer) break;
-        if (c < end) next = 2 * band->origin[c] + 1;
+/* Breadth-first search in the residual network from the `tail` states in the queue: all others that they reach or,
+   `against` the flow, that reach them get levels. */
+GPROJI_INTERNAL void gproji_band_search(gproji_band *band, int32_t tail, bool against) {
+    int32_t head = 0, c;
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, other = !(s & 1), level = band->level[s] + 1;
+        int32_t end = band->start[v + 1];
+        bool unlimited = against == other; /* from exits to entries; back again only what flows */
+        const unsigned char *flow = other ? band->in : band->out;
+        for (c = unlimited || band->load[v] > 0 ? band->start[v] : end; c < end; ++c)
+            if (unlimited || flow[c] > 0) tail = gproji_band_reach(band, 2 * band->to[c] + other, level, tail);
+        if (gproji_band_is_open(band, v, unlimited)) tail = gproji_band_reach(band, s ^ 1, level, tail);
     }
+}
+
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1: the node's other one, or a
+   neighbour's along arc turn[s]. */
+GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
+    int32_t v = s >> 1, other = !(s & 1), nearer = band->level[s] - 1, end = band->start[v + 1], c = band->turn[s];
+    if (band->level[s ^ 1] == nearer && gproji_band_is_open(band, v, !other)) return s ^ 1;
+    for (; c < end; ++c)
+        if (band->level[2 * band->to[c] + other] == nearer && (!other || band->in[c] > 0)) break;
     band->turn[s] = c;
-    return next;
+    return c < end ? 2 * band->to[c] + other : -1;
+}
+
+/* Sends a unit from state s to state `next`, along arc turn[s] unless both belong to one node. */
+GPROJI_INLINED void gproji_band_send(gproji_band *band, int32_t s, int32_t next) {
+    int32_t v = s >> 1, w = next >> 1, c = band->turn[s], back = band->start[w];
+    if (v == w) {
+        band->load[v] += next - s;
+        return;
+    }
+    while (band->to[back] != v) ++back;
+    if (s & 1)
+        band->out[c]++, band->in[back]++;
+    else
+        band->in[c]--, band->out[back]--;
 }
 
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
-    int32_t *path = band->queue, i, k, c, depth, head = 0, tail = 0;
+    int32_t *path = band->queue, i, k, depth, tail = 0;
     bool found = false;
-    /* 1. Levels, by breadth-first search from the sink against the residual arcs. Is the source reached? */
+    /* 1. Levels, from the sink. Is the source reached? */
     for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
     for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c) {
-                int32_t to = band->to[c], end = band->unit[to] + band->load[to];
-                for (k = band->unit[to]; k < end && band->origin[k] != v; ++k) continue;
-                if (k < end) tail = gproji_band_rise(band, 2 * to, level, tail);
-            }
-        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    if (!found) return false;
-    /* 2. Paths, depth first, from all nodes next to the source. */
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_reach(band, 2 * i + 1, 0, tail);
+    gproji_band_search(band, tail, true);
     for (i = 0; i < band->nodes; ++i) {
-        band->turn[2 * i] = band->unit[i] - 1;
-        band->turn[2 * i + 1] = band->start[i];
+        found = found || ((band->ends[i] & GPROJI_BAND_SOURCE) && band->level[2 * i] >= 0);
+        band->turn[2 * i] = band->turn[2 * i + 1] = band->start[i];
     }
+    /* 2. Paths, depth first, from all nodes next to the source. */
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE) || band->level[2 * i] < 0) continue;
         for (path[0] = 2 * i, depth = 0; depth >= 0;) {
-            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s, from = -1;
-            if (next >= 0 && next != s) { /* one step further */
-                path[++depth] = next;
-                continue;
-            }
+            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
             if (next < 0) { /* a dead end */
                 band->level[path[depth--]] = -1;
-                continue;
+            } else if (next != s) { /* one step further */
+                path[++depth] = next;
+            } else { /* at the sink: send a unit along the path, and begin again */
+                for (k = 0; k < depth; ++k) gproji_band_send(band, path[k], path[k + 1]);
+                depth = 0;
             }
-            /* At the sink: send a unit along the path, and begin again. from: the exit that was passed last */
-            for (k = 0; k < depth; ++k) {
-                int32_t v = path[k] >> 1;
-                if (path[k] & 1)
-                    from = v;
-                else if ((path[k + 1] ^ path[k]) == 1) /* entry to exit: one unit more */
-                    band->origin[band->unit[v] + band->load[v]++] = from;
-                else if (k > 0 && (path[k - 1] ^ path[k]) == 1) /* exit to entry: one less */
-                    band->origin[band->turn[path[k]]] = band->origin[band->unit[v] + --band->load[v]];
-                else /* entry to a neighbour's exit: this unit now comes from elsewhere */
-                    band->origin[band->turn[path[k]]] = from;
-            }
-            depth = 0;
         }
     }
-    return true;
-}
-
-/* Appends a state that is not marked to a queue with `tail` entries; returns the new number. */
-GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
-    if (band->mark[s] & mark) return tail;
-    band->mark[s] |= mark;
-    band->queue[tail] = s;
-    return tail + 1;
-}
-
-/* Marks all states reachable from the `tail` ones in the queue. */
-GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
-    int32_t head = 0, c;
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1;
-        if (s & 1) {
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
-            if (band->load[v] > 0) tail = gproji_band_reach(band, 2 * v, mark, tail);
-        } else {
-            for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-                if (band->origin[c] >= 0) tail = gproji_band_reach(band, 2 * band->origin[c] + 1, mark, tail);
-            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, s + 1, mark, tail);
-        }
-    }
+    return found;
 }
 
 /* -- the smallest separator in a band -- */
@@ -4910,8 +4872,8 @@ GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int3
 /* Builds the network for the band of coordinates from[0]..from[1]-1. False: no memory, or arcs beyond their type. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
-    int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
-    int64_t arcs = 0, units = 0, n;
+    int32_t i, e = 0, count = 0, divisor = 0, largest = 0, *at;
+    int64_t arcs = 0, n;
     size_t bytes;
     /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below, next to nodes above, belong to it. */
     for (i = 0; i < nd->nodes; ++i) {
@@ -4930,35 +4892,35 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         for (; b > 0; a = b, b = rest) rest = a % b;
         divisor = a;
     }
-    for (i = 0; i < count; ++i) units += gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
-    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    if (arcs > INT32_MAX) return false;
     /* 2. Lay the arrays out in one block, which serves all bands. */
     n = count;
-    bytes = (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n;
+    bytes = (size_t)(10 * n + 1 + arcs) * sizeof(int32_t) + (size_t)(2 * arcs + 3 * n);
     band->block = gproji_grow(nd->heap, band->block, &band->block_size, bytes, 1);
     nd->failed = nd->failed || band->block_size < bytes;
     if (nd->failed) return false;
     at = (int32_t *)band->block;
     band->id = at, at += n;
     band->start = at, at += n + 1;
-    band->unit = at, at += n + 1;
+    band->capacity = at, at += n;
     band->load = at, at += n;
     band->level = at, at += 2 * n;
     band->turn = at, at += 2 * n;
     band->queue = at, at += 2 * n;
     band->to = at, at += arcs;
-    band->origin = at, at += units;
-    band->ends = (unsigned char *)at;
+    band->out = (unsigned char *)at;
+    band->in = band->out + arcs;
+    band->ends = band->in + arcs;
     band->mark = band->ends + n;
     /* 3. Fill in nodes, capacities and arcs. */
     band->nodes = count;
     memcpy(band->id, nd->queue, (size_t)count * sizeof(int32_t));
+    memset(band->out, 0, 2 * (size_t)arcs);
     for (i = 0; i < count; ++i) {
         int32_t v = band->id[i], next;
         const int32_t *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
         band->load[i] = band->ends[i] = 0;
-        band->unit[i] = u;
-        u += gproji_band_capacity(nd->here.weight[v], divisor, largest);
+        band->capacity[i] = gproji_band_capacity(nd->here.weight[v], divisor, largest);
         for (band->start[i] = e; list < end; ++list) {
             next = nd->number[*list];
             if (next >= 0)
@@ -4968,7 +4930,6 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         }
     }
     band->start[count] = e;
-    band->unit[count] = u;
     return true;
 }
 
@@ -5040,19 +5001,24 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
         if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
     /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is
        reached from the source or reaches the sink. */
-    for (i = 0; i < 2 * band->nodes; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+    for (i = 0; i < 2 * band->nodes; ++i) {
+        band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+        band->level[i] = -1;
+    }
     for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
-    gproji_band_spread(band, tail, GPROJI_BAND_SOURCE);
+        if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, 0, tail);
+    gproji_band_search(band, tail, false);
     for (i = tail = 0; i < 2 * band->nodes; ++i) {
         bool lower = cut->coordinate[band->id[i >> 1]] < cut->at;
+        if (band->level[i] >= 0) band->mark[i] |= GPROJI_BAND_SOURCE;
         if (!band->mark[i]) ++open;
-        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i])) {
-            band->mark[i] |= GPROJI_BAND_MIDDLE;
-            band->queue[tail++] = i;
-        }
+        band->level[i] = -1;
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i]))
+            tail = gproji_band_reach(band, i, 0, tail);
     }
-    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
+    if (open > 0) gproji_band_search(band, tail, false);
+    for (i = 0; i < 2 * band->nodes; ++i)
+        if (band->level[i] >= 0) band->mark[i] |= GPROJI_BAND_MIDDLE;
     /* 4. Take the cheapest. */
     best = gproji_nd_measure(nd, cut, from, marks[0]);
     for (i = 1; i < (open > 0 ? 3 : 1); ++i) {
