@@ -3673,32 +3673,23 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* The extend-add of a child's update matrix, with `rows` rows. */
-typedef struct gproji_addition {
-    const gproji_panel *panel; /* the parent's */
-    const gproji_piece *piece;
-    int32_t pieces;
-    const double *update;
-    int32_t rows;
-} gproji_addition;
-
-/* Extend-adds the columns that go to the parent's storage rows [from, to), which are ends of pieces. */
-GPROJI_INTERNAL void gproji_add_columns(const gproji_addition *add, int32_t from, int32_t to) {
-    const gproji_panel *panel = add->panel;
-    int32_t first = 0, last = add->pieces;
+/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage rows
+   [from, to), which are ends of pieces. */
+GPROJI_INTERNAL void gproji_add_columns(const gproji_panel *parent, const gproji_piece *piece, int32_t pieces,
+                                        const double *update, int32_t rows, int32_t from, int32_t to) {
+    int32_t first = 0, last = pieces;
     while (first < last) { /* find the first piece from there on */
         int32_t middle = first + (last - first) / 2;
-        if (add->piece[middle].to < from)
+        if (piece[middle].to < from)
             first = middle + 1;
         else
             last = middle;
     }
-    for (; first < add->pieces && add->piece[first].to < to; ++first) {
-        const gproji_piece *piece = add->piece + first;
-        int32_t column = piece->from, strip = gproji_strip_begin(column);
-        panel->kernels->add(piece, add->pieces - first, add->update + gproji_update_offset(add->rows, column),
-                            add->rows - strip, strip + GPROJI_STRIP - column, gproji_panel_column(panel, piece->to),
-                            gproji_column_stride(panel, piece->to));
+    for (; first < pieces && piece[first].to < to; ++first) {
+        int32_t column = piece[first].from, strip = gproji_strip_begin(column), at = piece[first].to;
+        parent->kernels->add(piece + first, pieces - first, update + gproji_update_offset(rows, column), rows - strip,
+                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, at),
+                             gproji_column_stride(parent, at));
     }
 }
 
@@ -4367,21 +4358,21 @@ typedef struct gproji_nd_cut {
 
 /* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
    joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
-   limit. Each unit in a node stores the neighbour it comes from, which is all that augmentation needs. */
+   limit. The residual network has the same arcs as long as they have room, and the opposite ones where units flow. */
 typedef struct gproji_band {
     int32_t nodes;
-    int32_t *id;         /* nodes: index in the part */
-    int32_t *start;      /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
-    int32_t *unit;       /* nodes + 1: room for units unit[i]..unit[i + 1] - 1, */
-    int32_t *load;       /* nodes: of which the first `load` are in use */
-    int32_t *level;      /* states: steps to the sink; -1: it is not reached, or no more in this round */
-    int32_t *turn;       /* states: the next step to try; see gproji_band_next */
-    int32_t *queue;      /* states; also the path that is searched */
-    int32_t *to;         /* arcs: the neighbour */
-    int32_t *origin;     /* units: the neighbour from which a unit comes; -1: the source */
-    unsigned char *ends; /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
-    unsigned char *mark; /* states: GPROJI_BAND_... */
-    void *block;         /* all these arrays */
+    int32_t *id;             /* nodes: index in the part */
+    int32_t *start;          /* nodes + 1: arcs are start[i]..start[i + 1] - 1 */
+    int32_t *capacity;       /* nodes: units that can pass, */
+    int32_t *load;           /* and those that do */
+    int32_t *level;          /* states: steps in the last search; -1: not reached, or no more in this round */
+    int32_t *turn;           /* states: the next arc to try */
+    int32_t *queue;          /* states; also the path that is searched */
+    int32_t *to;             /* arcs: the neighbour */
+    unsigned char *out, *in; /* arcs: units that flow to the neighbour, and that come from it */
+    unsigned char *ends;     /* nodes: GPROJI_BAND_SOURCE, _SINK: adjacent to nodes below the band, above it */
+    unsigned char *mark;     /* states: GPROJI_BAND_... */
+    void *block;             /* all these arrays */
     size_t block_size;
 } gproji_band;
 
@@ -4795,127 +4786,89 @@ GPROJI_INTERNAL void gproji_nd_try_all(gproji_nd *nd, gproji_nd_cut *best) {
 
 /* -- the flow through a band -- */
 
-GPROJI_INLINE bool gproji_band_has_room(const gproji_band *band, int32_t v) {
-    return band->load[v] < band->unit[v + 1] - band->unit[v];
+/* Can more flow between node v's own states, from the exit to the entry or the other way round? */
+GPROJI_INLINE bool gproji_band_is_open(const gproji_band *band, int32_t v, bool from_exit) {
+    return from_exit ? band->load[v] > 0 : band->load[v] < band->capacity[v];
 }
 
 /* Appends a state without a level to a queue with `tail` entries; returns the new number. */
-GPROJI_INLINE int32_t gproji_band_rise(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
+GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, int32_t level, int32_t tail) {
     if (band->level[s] >= 0) return tail;
     band->level[s] = level;
     band->queue[tail] = s;
     return tail + 1;
 }
 
-/* The next state, one step nearer to the sink, to which more can flow from state s, or -1. From an exit: along an arc,
-   or back to the entry if anything passes. From an entry: to the exit if there is room, or back along an arc with flow.
-   turn[s] is the arc, or the unit that is taken back; one less is an entry's own exit. */
-GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
-    const int32_t *level = band->level;
-    int32_t v = s >> 1, c = band->turn[s], nearer = level[s] - 1, end, next = -1;
-    if (s & 1) {
-        for (end = band->start[v + 1]; c < end && level[2 * band->to[c]] != nearer; ++c) continue;
-        if (c < end)
-            next = 2 * band->to[c];
-        else if (band->load[v] > 0 && level[2 * v] == nearer)
-            next = 2 * v;
-    } else {
-        if (c < band->unit[v]) {
-            if (gproji_band_has_room(band, v) && level[s + 1] == nearer) return s + 1;
-            ++c;
-        }
-        for (end = band->unit[v] + band->load[v]; c < end; ++c)
-            if (band->origin[c] >= 0 && level[2 * band->origin[c] + 1] == nearer) break;
-        if (c < end) next = 2 * band->origin[c] + 1;
+/* Breadth-first search in the residual network from the `tail` states in the queue: all others that they reach or,
+   `against` the flow, that reach them get levels. */
+GPROJI_INTERNAL void gproji_band_search(gproji_band *band, int32_t tail, bool against) {
+    int32_t head = 0, c;
+    while (head < tail) {
+        int32_t s = band->queue[head++], v = s >> 1, other = !(s & 1), level = band->level[s] + 1;
+        int32_t end = band->start[v + 1];
+        bool unlimited = against == other; /* from exits to entries; back again only what flows */
+        const unsigned char *flow = other ? band->in : band->out;
+        for (c = unlimited || band->load[v] > 0 ? band->start[v] : end; c < end; ++c)
+            if (unlimited || flow[c] > 0) tail = gproji_band_reach(band, 2 * band->to[c] + other, level, tail);
+        if (gproji_band_is_open(band, v, unlimited)) tail = gproji_band_reach(band, s ^ 1, level, tail);
     }
+}
+
+/* The next state, one step nearer to the sink, to which more can flow from state s, or -1: the node's other one, or a
+   neighbour's along arc turn[s]. */
+GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
+    int32_t v = s >> 1, other = !(s & 1), nearer = band->level[s] - 1, end = band->start[v + 1], c = band->turn[s];
+    if (band->level[s ^ 1] == nearer && gproji_band_is_open(band, v, !other)) return s ^ 1;
+    for (; c < end; ++c)
+        if (band->level[2 * band->to[c] + other] == nearer && (!other || band->in[c] > 0)) break;
     band->turn[s] = c;
-    return next;
+    return c < end ? 2 * band->to[c] + other : -1;
+}
+
+/* Sends a unit from state s to state `next`, along arc turn[s] unless both belong to one node. */
+GPROJI_INLINED void gproji_band_send(gproji_band *band, int32_t s, int32_t next) {
+    int32_t v = s >> 1, w = next >> 1, c = band->turn[s], back = band->start[w];
+    if (v == w) {
+        band->load[v] += next - s;
+        return;
+    }
+    while (band->to[back] != v) ++back;
+    if (s & 1)
+        band->out[c]++, band->in[back]++;
+    else
+        band->in[c]--, band->out[back]--;
 }
 
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
    the states with a level are those that reach the sink. */
 GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
-    int32_t *path = band->queue, i, k, c, depth, head = 0, tail = 0;
+    int32_t *path = band->queue, i, k, depth, tail = 0;
     bool found = false;
-    /* 1. Levels, by breadth-first search from the sink against the residual arcs. Is the source reached? */
+    /* 1. Levels, from the sink. Is the source reached? */
     for (i = 0; i < 2 * band->nodes; ++i) band->level[i] = -1;
     for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_rise(band, 2 * i + 1, 0, tail);
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1, level = band->level[s] + 1;
-        if (s & 1) { /* from the node's own entry; from entries that can return a unit to this exit */
-            if (gproji_band_has_room(band, v)) tail = gproji_band_rise(band, 2 * v, level, tail);
-            for (c = band->start[v]; band->load[v] > 0 && c < band->start[v + 1]; ++c) {
-                int32_t to = band->to[c], end = band->unit[to] + band->load[to];
-                for (k = band->unit[to]; k < end && band->origin[k] != v; ++k) continue;
-                if (k < end) tail = gproji_band_rise(band, 2 * to, level, tail);
-            }
-        } else { /* from the own exit, which returns a unit; from all neighbours' exits */
-            found = found || (band->ends[v] & GPROJI_BAND_SOURCE);
-            if (band->load[v] > 0) tail = gproji_band_rise(band, s + 1, level, tail);
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_rise(band, 2 * band->to[c] + 1, level, tail);
-        }
-    }
-    if (!found) return false;
-    /* 2. Paths, depth first, from all nodes next to the source. */
+        if (band->ends[i] & GPROJI_BAND_SINK) tail = gproji_band_reach(band, 2 * i + 1, 0, tail);
+    gproji_band_search(band, tail, true);
     for (i = 0; i < band->nodes; ++i) {
-        band->turn[2 * i] = band->unit[i] - 1;
-        band->turn[2 * i + 1] = band->start[i];
+        found = found || ((band->ends[i] & GPROJI_BAND_SOURCE) && band->level[2 * i] >= 0);
+        band->turn[2 * i] = band->turn[2 * i + 1] = band->start[i];
     }
+    /* 2. Paths, depth first, from all nodes next to the source. */
     for (i = 0; i < band->nodes; ++i) {
         if (!(band->ends[i] & GPROJI_BAND_SOURCE) || band->level[2 * i] < 0) continue;
         for (path[0] = 2 * i, depth = 0; depth >= 0;) {
-            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s, from = -1;
-            if (next >= 0 && next != s) { /* one step further */
-                path[++depth] = next;
-                continue;
-            }
+            int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
             if (next < 0) { /* a dead end */
                 band->level[path[depth--]] = -1;
-                continue;
+            } else if (next != s) { /* one step further */
+                path[++depth] = next;
+            } else { /* at the sink: send a unit along the path, and begin again */
+                for (k = 0; k < depth; ++k) gproji_band_send(band, path[k], path[k + 1]);
+                depth = 0;
             }
-            /* At the sink: send a unit along the path, and begin again. from: the exit that was passed last */
-            for (k = 0; k < depth; ++k) {
-                int32_t v = path[k] >> 1;
-                if (path[k] & 1)
-                    from = v;
-                else if ((path[k + 1] ^ path[k]) == 1) /* entry to exit: one unit more */
-                    band->origin[band->unit[v] + band->load[v]++] = from;
-                else if (k > 0 && (path[k - 1] ^ path[k]) == 1) /* exit to entry: one less */
-                    band->origin[band->turn[path[k]]] = band->origin[band->unit[v] + --band->load[v]];
-                else /* entry to a neighbour's exit: this unit now comes from elsewhere */
-                    band->origin[band->turn[path[k]]] = from;
-            }
-            depth = 0;
         }
     }
-    return true;
-}
-
-/* Appends a state that is not marked to a queue with `tail` entries; returns the new number. */
-GPROJI_INLINE int32_t gproji_band_reach(gproji_band *band, int32_t s, unsigned char mark, int32_t tail) {
-    if (band->mark[s] & mark) return tail;
-    band->mark[s] |= mark;
-    band->queue[tail] = s;
-    return tail + 1;
-}
-
-/* Marks all states reachable from the `tail` ones in the queue. */
-GPROJI_INTERNAL void gproji_band_spread(gproji_band *band, int32_t tail, unsigned char mark) {
-    int32_t head = 0, c;
-    while (head < tail) {
-        int32_t s = band->queue[head++], v = s >> 1;
-        if (s & 1) {
-            for (c = band->start[v]; c < band->start[v + 1]; ++c)
-                tail = gproji_band_reach(band, 2 * band->to[c], mark, tail);
-            if (band->load[v] > 0) tail = gproji_band_reach(band, 2 * v, mark, tail);
-        } else {
-            for (c = band->unit[v]; c < band->unit[v] + band->load[v]; ++c)
-                if (band->origin[c] >= 0) tail = gproji_band_reach(band, 2 * band->origin[c] + 1, mark, tail);
-            if (gproji_band_has_room(band, v)) tail = gproji_band_reach(band, s + 1, mark, tail);
-        }
-    }
+    return found;
 }
 
 /* -- the smallest separator in a band -- */
@@ -4929,8 +4882,8 @@ GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int3
 /* Builds the network for the band of coordinates from[0]..from[1]-1. False: no memory, or arcs beyond their type. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
-    int32_t i, e = 0, u = 0, count = 0, divisor = 0, largest = 0, *at;
-    int64_t arcs = 0, units = 0, n;
+    int32_t i, e = 0, count = 0, divisor = 0, largest = 0, *at;
+    int64_t arcs = 0, n;
     size_t bytes;
     /* 1. Find the nodes, and the weights' greatest common divisor. Nodes below, next to nodes above, belong to it. */
     for (i = 0; i < nd->nodes; ++i) {
@@ -4949,35 +4902,35 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         for (; b > 0; a = b, b = rest) rest = a % b;
         divisor = a;
     }
-    for (i = 0; i < count; ++i) units += gproji_band_capacity(nd->here.weight[nd->queue[i]], divisor, largest);
-    if (arcs > INT32_MAX || units > INT32_MAX) return false;
+    if (arcs > INT32_MAX) return false;
     /* 2. Lay the arrays out in one block, which serves all bands. */
     n = count;
-    bytes = (size_t)(10 * n + 2 + arcs + units) * sizeof(int32_t) + 3 * (size_t)n;
+    bytes = (size_t)(10 * n + 1 + arcs) * sizeof(int32_t) + (size_t)(2 * arcs + 3 * n);
     band->block = gproji_grow(nd->heap, band->block, &band->block_size, bytes, 1);
     nd->failed = nd->failed || band->block_size < bytes;
     if (nd->failed) return false;
     at = (int32_t *)band->block;
     band->id = at, at += n;
     band->start = at, at += n + 1;
-    band->unit = at, at += n + 1;
+    band->capacity = at, at += n;
     band->load = at, at += n;
     band->level = at, at += 2 * n;
     band->turn = at, at += 2 * n;
     band->queue = at, at += 2 * n;
     band->to = at, at += arcs;
-    band->origin = at, at += units;
-    band->ends = (unsigned char *)at;
+    band->out = (unsigned char *)at;
+    band->in = band->out + arcs;
+    band->ends = band->in + arcs;
     band->mark = band->ends + n;
     /* 3. Fill in nodes, capacities and arcs. */
     band->nodes = count;
     memcpy(band->id, nd->queue, (size_t)count * sizeof(int32_t));
+    memset(band->out, 0, 2 * (size_t)arcs);
     for (i = 0; i < count; ++i) {
         int32_t v = band->id[i], next;
         const int32_t *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
         band->load[i] = band->ends[i] = 0;
-        band->unit[i] = u;
-        u += gproji_band_capacity(nd->here.weight[v], divisor, largest);
+        band->capacity[i] = gproji_band_capacity(nd->here.weight[v], divisor, largest);
         for (band->start[i] = e; list < end; ++list) {
             next = nd->number[*list];
             if (next >= 0)
@@ -4987,7 +4940,6 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         }
     }
     band->start[count] = e;
-    band->unit[count] = u;
     return true;
 }
 
@@ -5059,19 +5011,24 @@ GPROJI_INTERNAL double gproji_nd_separate(gproji_nd *nd, const gproji_nd_cut *cu
         if (++rounds == GPROJI_ND_ROUNDS) return HUGE_VAL;
     /* 3. Mark the minimum cuts next to the source, to the sink and to the threshold; all are one if each state is
        reached from the source or reaches the sink. */
-    for (i = 0; i < 2 * band->nodes; ++i) band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+    for (i = 0; i < 2 * band->nodes; ++i) {
+        band->mark[i] = band->level[i] >= 0 ? GPROJI_BAND_SINK : 0;
+        band->level[i] = -1;
+    }
     for (i = 0; i < band->nodes; ++i)
-        if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, GPROJI_BAND_SOURCE, tail);
-    gproji_band_spread(band, tail, GPROJI_BAND_SOURCE);
+        if (band->ends[i] & GPROJI_BAND_SOURCE) tail = gproji_band_reach(band, 2 * i, 0, tail);
+    gproji_band_search(band, tail, false);
     for (i = tail = 0; i < 2 * band->nodes; ++i) {
         bool lower = cut->coordinate[band->id[i >> 1]] < cut->at;
+        if (band->level[i] >= 0) band->mark[i] |= GPROJI_BAND_SOURCE;
         if (!band->mark[i]) ++open;
-        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i])) {
-            band->mark[i] |= GPROJI_BAND_MIDDLE;
-            band->queue[tail++] = i;
-        }
+        band->level[i] = -1;
+        if ((band->mark[i] & GPROJI_BAND_SOURCE) || (lower && !band->mark[i]))
+            tail = gproji_band_reach(band, i, 0, tail);
     }
-    if (open > 0) gproji_band_spread(band, tail, GPROJI_BAND_MIDDLE);
+    if (open > 0) gproji_band_search(band, tail, false);
+    for (i = 0; i < 2 * band->nodes; ++i)
+        if (band->level[i] >= 0) band->mark[i] |= GPROJI_BAND_MIDDLE;
     /* 4. Take the cheapest. */
     best = gproji_nd_measure(nd, cut, from, marks[0]);
     for (i = 1; i < (open > 0 ? 3 : 1); ++i) {
@@ -5426,7 +5383,8 @@ typedef struct gproji_analysis {
     /* by supernode: */
     int32_t supernodes;
     int32_t *head, *tail; /* first and last position in the chain */
-    int32_t *width, *below, *below_nodes;
+    int32_t *width;       /* 0: has joined an ancestor */
+    int32_t *below, *below_nodes;
     int32_t *super_parent, *child, *sibling;
 } gproji_analysis;
 
@@ -5637,9 +5595,7 @@ GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
 
 /* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
 GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
-    int32_t n = an->graph->nodes, k, p, s = -1, kept = 0, *super_of = an->a;
-    int32_t *joined = an->b;                /* 1: has joined an ancestor */
-    int32_t *into = an->c, *number = an->d; /* the supernode that s has become; the new number */
+    int32_t n = an->graph->nodes, k, p, s = -1, *super_of = an->a;
     /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
@@ -5664,7 +5620,7 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     }
     if (!relax) return;
     /* 2. Relaxation: children join their parents if that is cheaper, although it puts zeros into the factor. */
-    for (p = 0; p < an->supernodes; ++p) an->child[p] = -1, joined[p] = 0;
+    for (p = 0; p < an->supernodes; ++p) an->child[p] = -1;
     for (p = 0; p < an->supernodes; ++p) { /* children come before parents: p's are final */
         int32_t *link = &an->child[p];
         double cost = gproji_front_cost(an->width[p], an->below[p]);
@@ -5676,8 +5632,8 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
                 continue;
             }
             cost = both;
-            joined[c] = 1;
             an->width[p] = width;
+            an->width[c] = 0;
             an->chain[an->tail[c]] = an->head[p];
             an->head[p] = an->head[c];
             *link = an->child[c]; /* grandchildren replace c in the list: they are candidates too */
@@ -5689,20 +5645,11 @@ GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
             an->child[an->super_parent[p]] = p;
         }
     }
-    /* 3. The supernodes that are left get new numbers in the same order. */
-    for (s = an->supernodes - 1; s >= 0; --s) into[s] = joined[s] ? into[an->super_parent[s]] : s;
-    for (s = 0; s < an->supernodes; ++s) {
-        number[s] = kept;
-        if (!joined[s]) kept++;
+    /* 3. Parents that have joined others give way to these: parents come last, so theirs are final. */
+    for (s = an->supernodes - 1; s >= 0; --s) {
+        int32_t up = an->super_parent[s];
+        if (up >= 0 && an->width[up] == 0) an->super_parent[s] = an->super_parent[up];
     }
-    for (s = 0; s < an->supernodes; ++s) {
-        int32_t up = an->super_parent[s], to = number[s];
-        if (joined[s]) continue; /* to <= s: all that is overwritten has moved already */
-        an->super_parent[to] = up < 0 ? -1 : number[into[up]];
-        an->head[to] = an->head[s], an->tail[to] = an->tail[s];
-        an->width[to] = an->width[s], an->below[to] = an->below[s], an->below_nodes[to] = an->below_nodes[s];
-    }
-    an->supernodes = kept;
 }
 
 /* Turns supernodes into fronts, and renumbers them and the positions by postorder unless the order must be kept. */
@@ -5713,11 +5660,15 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
-    gproji_invert(count, sequence, number);
-    out->fronts = count;
-    out->front = (gproji_front *)gproji_pool_take_zeroed(an->keep, count, sizeof(gproji_front));
+    for (k = 0; k < count; ++k) {
+        int32_t s = sequence[k];
+        if (an->width[s] == 0) continue;
+        number[s] = out->fronts;
+        sequence[out->fronts++] = s;
+    }
+    out->front = (gproji_front *)gproji_pool_take_zeroed(an->keep, out->fronts, sizeof(gproji_front));
     if (!out->front) return false;
-    for (f = 0; f < count; ++f) {
+    for (f = 0; f < out->fronts; ++f) {
         int32_t s = sequence[f], up = an->super_parent[s];
         gproji_front *front = &out->front[f];
         gproji_shape shape = gproji_shape_of(an->width[s], an->below[s]);
@@ -5744,7 +5695,7 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
         out->factor_entries += w * (w + 1) / 2 + w * front->below;
         out->most_rows = gproji_max(out->most_rows, shape.stride);
     }
-    for (f = count - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
+    for (f = out->fronts - 1; f >= 0; --f) { /* descending, so that children ascend in their list */
         gproji_front *front = &out->front[f];
         if (front->parent < 0) continue;
         front->sibling = out->front[front->parent].child;
@@ -6125,25 +6076,24 @@ GPROJ_API gproj_cholesky_info gproj_cholesky_get_info(const gproj_cholesky *chol
 
 /* -- analysis -- */
 
-/* Analyses a graph, and prepares the permutation and the pieces of scattering. Node i has the columns
-   member[member_start[i]..]; without `member` these numbers themselves. The options give no order. False: no memory. */
-GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph,
-                                                   const gproj_cholesky_options *options, const int32_t *member_start,
-                                                   const int32_t *member) {
+/* Analyses a graph whose nodes weigh `columns` altogether, and prepares the permutation and the pieces of scattering.
+   `member` lists the first node's columns, then the second's; NULL: in ascending order. The options give no order.
+   False: no memory. */
+GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gproji_graph *graph, int32_t columns,
+                                                   const gproj_cholesky_options *options, const int32_t *member) {
     const gproji_symbolic *sy = &c->symbolic;
     int64_t most = 0, *start;
     int32_t f, k, i, at = 0;
-    if (!gproji_analyse(&c->kept, graph, member_start[graph->nodes], options, c->parallel.run != NULL, &c->symbolic))
-        return false;
+    if (!gproji_analyse(&c->kept, graph, columns, options, c->parallel.run != NULL, &c->symbolic)) return false;
     for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
         most += 2 * sy->front[f].row_nodes + sy->front[f].below / GPROJI_BLOCK + 2; /* see gproji_find_pieces */
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
     if (c->kept.failed) return false;
-    for (k = 0; k < sy->nodes; ++k)
-        for (i = member_start[sy->order[k]]; i < member_start[sy->order[k] + 1]; ++i)
-            c->permutation[at++] = member ? member[i] : i;
+    for (i = 0; i < sy->nodes; ++i)
+        for (k = 0; k < graph->weight[i]; ++k, ++at)
+            c->permutation[sy->column[sy->position[i]] + k] = member ? member[at] : at;
     /* Rows that kernels add to the parent's panel in one go: see gproji_find_pieces. */
     start[0] = 0;
     for (f = 0; f < sy->fronts; ++f) {
@@ -6171,33 +6121,22 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Analyses by blocks, for the system: node i is node_size[i] >= 1 consecutive variables, and the nodes have this graph
-   (see gproji_graph). The options give no order. */
-GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int32_t node_count,
-                                                          const int32_t *node_size, const int64_t *adjacency_start,
-                                                          const int32_t *adjacency,
-                                                          const gproj_cholesky_options *options) {
+/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables. */
+GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, const gproji_graph *graph,
+                                                          gproj_ordering ordering) {
     gproj_cholesky_options choice;
-    gproji_graph graph;
-    int32_t i, *start, columns = 0;
+    int32_t i, columns = 0;
     memset(&choice, 0, sizeof choice);
-    if (options) choice = *options;
+    choice.ordering = ordering;
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
-    for (i = 0; i < node_count; ++i) {
-        if (node_size[i] > GPROJI_COLUMNS_MAX - columns)
+    for (i = 0; i < graph->nodes; ++i) {
+        if (graph->weight[i] > GPROJI_COLUMNS_MAX - columns)
             return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                                "the matrix would have more than %d columns", (int32_t)GPROJI_COLUMNS_MAX);
-        columns += node_size[i];
+        columns += graph->weight[i];
     }
-    graph.nodes = node_count, graph.start = adjacency_start, graph.adjacent = adjacency, graph.weight = node_size;
-    start = (int32_t *)gproji_take(&c->heap, (size_t)node_count + 1, sizeof(int32_t));
-    if (start) {
-        start[0] = 0;
-        for (i = 0; i < node_count; ++i) start[i + 1] = start[i] + node_size[i];
-        c->analysed = gproji_cholesky_analyse_graph(c, &graph, &choice, start, NULL);
-        gproji_give(&c->heap, start, (size_t)node_count + 1, sizeof(int32_t));
-    }
+    c->analysed = gproji_cholesky_analyse_graph(c, graph, columns, &choice, NULL);
     if (c->analysed) return GPROJ_OK;
     gproji_cholesky_forget(c);
     return gproji_fail_memory(&c->error);
@@ -6207,28 +6146,27 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, int
 typedef struct gproji_compression {
     gproji_pool pool;
     int32_t n;
-    int64_t *start;     /* n + 1: each column's neighbours, */
-    int32_t *neighbour; /* without the diagonal and without repetition */
-    uint32_t *hash;     /* n: a sum over the column and the neighbours */
-    int32_t *mark;      /* n */
-    int32_t *order;     /* n: the order to keep, or NULL */
-    int32_t *node_of;   /* n: each column's node, or -1 */
-    int32_t *member;    /* n: each node's columns */
-    int32_t *member_start;
-    gproji_graph graph; /* the nodes' */
+    int64_t *start;       /* n + 1: each column's neighbours, */
+    int32_t *neighbour;   /* without the diagonal and without repetition */
+    uint32_t *hash;       /* n: a sum over the column and the neighbours */
+    int32_t *mark;        /* n */
+    bool keep;            /* nodes must not change the order */
+    const int32_t *order; /* n: the order to keep; NULL: the natural one */
+    int32_t *node_of;     /* n: each column's node, or -1 */
+    int32_t *member;      /* n: the first node's columns, then the second's */
+    gproji_graph graph;   /* the nodes' */
 } gproji_compression;
 
-/* Finds the neighbours in both triangles, and the order to keep if the options ask for one. */
+/* Finds the neighbours in both triangles, and checks the order to keep if the options give one. */
 GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const int64_t *start, const int32_t *row,
                                                     const gproj_cholesky_options *options, gproj_error *error) {
-    bool given = options->ordering == GPROJ_ORDERING_GIVEN, natural = options->ordering == GPROJ_ORDERING_NATURAL;
+    bool given = options->ordering == GPROJ_ORDERING_GIVEN;
     int32_t n = x->n, j, k;
     int64_t p, q, to = 0;
     x->start = (int64_t *)gproji_pool_take_zeroed(&x->pool, (int64_t)n + 2, sizeof(int64_t));
     x->neighbour = gproji_take_ints(&x->pool, 2 * (n ? start[n] : 0));
     x->hash = (uint32_t *)gproji_pool_take(&x->pool, n, sizeof(uint32_t));
     x->mark = gproji_take_ints(&x->pool, n);
-    x->order = given || natural ? gproji_take_ints(&x->pool, n) : NULL;
     if (x->pool.failed) return gproji_fail_memory(error);
     /* 1. Counting sort: start[j + 1] is where column j's next neighbour goes. */
     for (j = 0; j < n; ++j)
@@ -6259,15 +6197,17 @@ GPROJI_INTERNAL gproj_code gproji_compression_begin(gproji_compression *x, const
     }
     x->start[n] = to;
     /* 3. The order to keep. */
+    x->keep = given || options->ordering == GPROJ_ORDERING_NATURAL;
+    x->order = given ? options->permutation : NULL;
+    if (n > 0 && given && !x->order) return gproji_refuse(error, "the order to keep is missing");
     for (k = 0; x->order && k < n; ++k) x->mark[k] = -1;
     for (k = 0; x->order && k < n; ++k) {
-        j = given ? (options->permutation ? options->permutation[k] : -1) : k;
-        if (given && !options->permutation) return gproji_refuse(error, "the order to keep is missing");
+        j = x->order[k];
         if (j < 0 || j >= n || x->mark[j] >= 0)
             return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_COLUMN, k,
                                "the order given is no permutation: entry %d is %d, %s", k, j,
                                j < 0 || j >= n ? "which is no column" : "as an earlier one is");
-        x->mark[j] = x->order[k] = j;
+        x->mark[j] = j;
     }
     return GPROJ_OK;
 }
@@ -6287,7 +6227,6 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     int64_t p, to = 0, *start;
     x->node_of = gproji_take_ints(&x->pool, n);
     x->member = gproji_take_ints(&x->pool, n);
-    x->member_start = gproji_take_ints(&x->pool, (int64_t)n + 1);
     weight = gproji_take_ints(&x->pool, n);
     adjacent = gproji_take_ints(&x->pool, x->start[n]);
     start = (int64_t *)gproji_pool_take(&x->pool, (int64_t)n + 1, sizeof(int64_t));
@@ -6297,30 +6236,25 @@ GPROJI_INTERNAL bool gproji_compression_merge(gproji_compression *x) {
     for (k = 0; k < n; ++k) {
         j = x->order ? x->order[k] : k;
         if (x->node_of[j] >= 0) continue;
-        if (x->order && first >= 0 && gproji_compression_same(x, first, j)) {
-            x->node_of[j] = nodes - 1;
-            x->member[at++] = j;
-            continue;
+        if (!x->keep || first < 0 || !gproji_compression_same(x, first, j)) {
+            first = x->mark[j] = j;
+            for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
+            weight[nodes++] = 0;
         }
-        first = j;
-        x->member_start[nodes] = at;
-        x->node_of[j] = nodes++;
+        x->node_of[j] = nodes - 1;
         x->member[at++] = j;
-        x->mark[j] = j;
-        for (p = x->start[j]; p < x->start[j + 1]; ++p) x->mark[x->neighbour[p]] = j;
-        for (p = x->start[j]; !x->order && p < x->start[j + 1]; ++p) {
+        for (p = x->start[j]; !x->keep && p < x->start[j + 1]; ++p) {
             i = x->neighbour[p];
             if (x->node_of[i] >= 0 || !gproji_compression_same(x, j, i)) continue;
             x->node_of[i] = nodes - 1;
             x->member[at++] = i;
         }
     }
-    x->member_start[nodes] = at;
+    for (j = 0; j < n; ++j) weight[x->node_of[j]]++;
     /* 2. A node's neighbours are the first member's. */
     for (k = 0; k < n; ++k) x->mark[k] = -1;
-    for (k = 0; k < nodes; ++k) {
-        j = x->member[x->member_start[k]];
-        weight[k] = x->member_start[k + 1] - x->member_start[k];
+    for (k = 0, at = 0; k < nodes; at += weight[k++]) {
+        j = x->member[at];
         start[k] = to;
         for (p = x->start[j]; p < x->start[j + 1]; ++p) {
             i = x->node_of[x->neighbour[p]];
@@ -6419,9 +6353,9 @@ GPROJ_API gproj_code gproj_cholesky_analyse(gproj_cholesky *cholesky, int32_t n,
     code = gproji_compression_begin(&x, start, row, &choice, &c->error);
     if (choice.ordering == GPROJ_ORDERING_GIVEN)
         choice.ordering = GPROJ_ORDERING_NATURAL; /* nodes come in this order */
-    if (code == GPROJ_OK && !(gproji_compression_merge(&x) &&
-                              gproji_cholesky_analyse_graph(c, &x.graph, &choice, x.member_start, x.member) &&
-                              gproji_cholesky_place_entries(c, &x, start, row)))
+    if (code == GPROJ_OK &&
+        !(gproji_compression_merge(&x) && gproji_cholesky_analyse_graph(c, &x.graph, n, &choice, x.member) &&
+          gproji_cholesky_place_entries(c, &x, start, row)))
         code = gproji_fail_memory(&c->error);
     gproji_pool_give_all(&x.pool);
     if (code != GPROJ_OK) gproji_cholesky_forget(c);
@@ -6519,10 +6453,9 @@ GPROJI_INTERNAL void gproji_gather_chunk(void *data, int32_t index) {
     }
     for (i = gathering->front->child; i >= 0; i = sy->front[i].sibling) {
         const gproji_front *child = &sy->front[i];
-        gproji_addition add;
-        add.panel = panel, add.update = c->values + child->update, add.rows = child->update_rows;
-        add.piece = c->piece + c->piece_start[i], add.pieces = (int32_t)(c->piece_start[i + 1] - c->piece_start[i]);
-        gproji_add_columns(&add, from, to);
+        int64_t first = c->piece_start[i];
+        gproji_add_columns(panel, c->piece + first, (int32_t)(c->piece_start[i + 1] - first), c->values + child->update,
+                           child->update_rows, from, to);
     }
 }
 
@@ -8766,6 +8699,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
     size_t room = 0, filled = 0;
     int64_t *start;
     int32_t *size, *adjacent = NULL, v;
+    gproji_graph graph;
     gproji_pool pool;
     bool done;
     gproji_pool_start(&pool, &s->heap);
@@ -8795,8 +8729,11 @@ GPROJI_INTERNAL gproj_code gproji_analyse_graph(gproj_system *s, gproji_incidenc
         }
     }
     gproji_pool_give_all(&in->pool); /* before the analysis, which needs much memory itself */
-    if (done) start[nodes] = (int64_t)filled;
-    if (done) code = gproji_cholesky_analyse_blocks(s->cholesky, nodes, size, start, adjacent, NULL);
+    if (done) {
+        start[nodes] = (int64_t)filled;
+        graph.nodes = nodes, graph.start = start, graph.adjacent = adjacent, graph.weight = size;
+        code = gproji_cholesky_analyse_blocks(s->cholesky, &graph, GPROJ_ORDERING_BEST);
+    }
     gproji_give(&s->heap, adjacent, room, sizeof *adjacent);
     gproji_pool_give_all(&pool);
     return code;

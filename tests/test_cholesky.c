@@ -628,6 +628,7 @@ GPROJT_TEST(cholesky_blocks) {
         matrix m;
         block_matrix blocks;
         double *x, *y;
+        gproji_graph graph;
         memset(linked, 0, sizeof linked);
         for (i = 0, first[0] = 0; i < NODES; ++i)
             size[i] = 1 + gprojt_below(&seed, 8), first[i + 1] = first[i] + size[i];
@@ -645,7 +646,8 @@ GPROJT_TEST(cholesky_blocks) {
                 if (linked[i][j]) adjacent[count++] = j;
         }
         start[NODES] = count;
-        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, NODES, size, start, adjacent, NULL) == GPROJ_OK);
+        graph.nodes = NODES, graph.start = start, graph.adjacent = adjacent, graph.weight = size;
+        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &graph, GPROJ_ORDERING_BEST) == GPROJ_OK);
         GPROJT_REQUIRE(gproji_cholesky_take_numeric(c));
         m = matrix_empty(n);
         for (i = 0; i < NODES; ++i)
@@ -1016,18 +1018,20 @@ GPROJT_TEST(cholesky_sizes) {
     static const int32_t half[] = {INT32_MAX / 2, INT32_MAX / 2, 3}, wide[] = {60000, 1};
     static const int64_t alone[] = {0, 0, 0, 0};
     static const int32_t nothing[] = {0};
+    static const gproji_graph three = {3, alone, nothing, half}, two = {2, alone, nothing, wide};
+    static const gproji_graph one = {1, alone, nothing, wide + 1};
     gproj_host host;
     gproj_cholesky *c;
     int32_t step;
     memset(&host, 0, sizeof host);
     host.allocator.limit = (size_t)100 << 20;
     c = gproj_cholesky_create(&host);
-    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 3, half, alone, nothing, NULL) == GPROJ_ERROR_SIZE);
-    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &three, GPROJ_ORDERING_BEST) == GPROJ_ERROR_SIZE);
+    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &two, GPROJ_ORDERING_BEST) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_get_info(c).factor_entries == (int64_t)60000 * 60001 / 2 + 1);
     GPROJT_CHECK(!gproji_cholesky_take_numeric(c)); /* 29 GB */
     GPROJT_CHECK(gproj_cholesky_error(c)->code == GPROJ_ERROR_MEMORY);
-    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 1, wide + 1, alone, nothing, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &one, GPROJ_ORDERING_BEST) == GPROJ_OK);
     GPROJT_CHECK(gproji_cholesky_take_numeric(c));
     gproj_cholesky_destroy(c);
     memset(&host, 0, sizeof host);
@@ -1037,8 +1041,8 @@ GPROJT_TEST(cholesky_sizes) {
         f.fail_at = step;
         host = gprojt_failing_host(&f);
         c = gproj_cholesky_create(&host);
-        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_ERROR_MEMORY);
-        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, 2, wide, alone, nothing, NULL) == GPROJ_OK);
+        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &two, GPROJ_ORDERING_BEST) == GPROJ_ERROR_MEMORY);
+        GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &two, GPROJ_ORDERING_BEST) == GPROJ_OK);
         gproj_cholesky_destroy(c);
         GPROJT_CHECK(f.held == 0);
     }

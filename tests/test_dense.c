@@ -276,7 +276,7 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
     int32_t *row_to = (int32_t *)malloc(sizeof(int32_t) * (size_t)(below + 1));
     gproji_piece *piece = (gproji_piece *)malloc(sizeof(gproji_piece) * (size_t)(2 * below + below / GPROJI_BLOCK + 2));
     gproji_panel panel = gproji_make_panel(kernels, w, u, values, NULL, update);
-    gproji_addition add;
+    int32_t pieces;
     for (i = 0; i < below; i = next) {
         int32_t gap = gproji_min(left, (int32_t)(gprojt_uniform(seed) * 4)), k;
         int32_t before = n - left - (below - i) + gap; /* the parent's row */
@@ -287,12 +287,13 @@ static void check_add(const gproji_kernels *kernels, int32_t w, int32_t u, int32
         for (k = i; k < next; ++k) row_to[k] = before + k - i;
     }
     for (i = 0; i < (int32_t)gproji_update_entries(rows); ++i) child[i] = 1.0 + gprojt_uniform(seed);
-    add.panel = &panel, add.piece = piece, add.update = child, add.rows = rows;
-    add.pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
-    GPROJT_CHECK(add.pieces <= 2 * groups + below / GPROJI_BLOCK + 2);
-    for (i = 0; i < storage(w, w); i += GPROJI_BLOCK) gproji_add_columns(&add, i, i + GPROJI_BLOCK);
+    pieces = gproji_find_pieces(kernels, groups, group, storage(child_w, child_w), below, to, storage(w, w), piece);
+    GPROJT_CHECK(pieces <= 2 * groups + below / GPROJI_BLOCK + 2);
+    for (i = 0; i < storage(w, w); i += GPROJI_BLOCK)
+        gproji_add_columns(&panel, piece, pieces, child, rows, i, i + GPROJI_BLOCK);
     for (i = 0; i < u; i += GPROJI_STRIP)
-        gproji_add_columns(&add, storage(w, w) + i, gproji_min(storage(w, w) + i + GPROJI_STRIP, storage(w, n)));
+        gproji_add_columns(&panel, piece, pieces, child, rows, storage(w, w) + i,
+                           gproji_min(storage(w, w) + i + GPROJI_STRIP, storage(w, n)));
     for (j = 0; j < below; ++j)
         for (i = j; i < below; ++i) {
             double *entry = entry_of(&panel, values, row_to[i], row_to[j]);

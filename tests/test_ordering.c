@@ -300,13 +300,10 @@ static double naive_flops(const graph *g, const int32_t *order) {
 /* The analysis with one of the orderings; the order of the nodes, if wanted. */
 static gproj_cholesky_info analysed(const graph *g, gproj_ordering ordering, int32_t *order) {
     gproj_cholesky *c = gproj_cholesky_create(NULL);
-    gproj_cholesky_options options;
     gproj_cholesky_info info;
     memset(&info, 0, sizeof info);
-    memset(&options, 0, sizeof options);
-    options.ordering = ordering;
     if (!c) return info;
-    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, g->nodes, g->weight, g->start, g->adjacent, &options) == GPROJ_OK);
+    GPROJT_CHECK(gproji_cholesky_analyse_blocks(c, &g->view, ordering) == GPROJ_OK);
     info = gproj_cholesky_get_info(c);
     if (order && g->nodes > 0) memcpy(order, c->symbolic.order, (size_t)g->nodes * sizeof(int32_t));
     gproj_cholesky_destroy(c);
@@ -586,7 +583,7 @@ static int32_t largest_flow(const gproji_band *band) {
     int32_t *from = (int32_t *)malloc(2 * (size_t)states * sizeof(int32_t));
     for (i = 0; i < band->nodes; ++i) {
         int32_t in = 2 + 2 * i, out = in + 1;
-        room[in * states + out] = band->unit[i + 1] - band->unit[i];
+        room[in * states + out] = band->capacity[i];
         if (band->ends[i] & GPROJI_BAND_SOURCE) room[in] = enough;
         if (band->ends[i] & GPROJI_BAND_SINK) room[out * states + 1] = enough;
         for (c = band->start[i]; c < band->start[i + 1]; ++c) room[out * states + 2 + 2 * band->to[c]] = enough;
@@ -607,14 +604,15 @@ static gproji_band random_band(uint64_t *seed, int32_t *block) {
         near[a][b] = near[b][a] = a != b;
     }
     band.nodes = n;
-    band.start = block, band.unit = block + 100, band.load = block + 200, band.level = block + 300;
-    band.turn = block + 400, band.queue = block + 500, band.origin = block + 700, band.to = block + 900;
+    band.start = block, band.capacity = block + 100, band.load = block + 200, band.level = block + 300;
+    band.turn = block + 400, band.queue = block + 500, band.to = block + 900;
     band.ends = (unsigned char *)(block + 3000), band.mark = band.ends + 100;
+    band.out = band.ends + 200, band.in = band.ends + 1500;
     for (i = 0; i < n; ++i) {
         band.start[i] = e;
         for (k = 0; k < n; ++k)
             if (near[i][k]) band.to[e++] = k;
-        band.unit[i + 1] = band.unit[i] + 1 + gprojt_below(seed, 3);
+        band.capacity[i] = 1 + gprojt_below(seed, 3);
         if (i < 1 + n / 6) band.ends[i] |= GPROJI_BAND_SOURCE;
         if (i >= n - 1 - n / 6) band.ends[i] |= GPROJI_BAND_SINK;
     }
@@ -629,22 +627,20 @@ GPROJT_TEST(dissection_flows) {
     int32_t tries, i, c, k;
     for (tries = 0; tries < 2000; ++tries) {
         gproji_band band = random_band(&seed, block);
-        int32_t flow = 0, out[32] = {0};
+        int32_t flow = 0;
         while (gproji_band_augment(&band)) continue;
         for (i = 0; i < band.nodes; ++i) {
-            GPROJT_CHECK(band.load[i] >= 0 && band.load[i] <= band.unit[i + 1] - band.unit[i]);
-            for (c = band.unit[i]; c < band.unit[i] + band.load[i]; ++c) {
-                bool arc = band.origin[c] < 0 && (band.ends[i] & GPROJI_BAND_SOURCE);
-                for (k = band.start[i]; k < band.start[i + 1]; ++k) arc |= band.to[k] == band.origin[c];
-                GPROJT_CHECK(arc);
-                if (band.origin[c] < 0)
-                    ++flow;
-                else
-                    ++out[band.origin[c]];
+            int32_t in = 0, out = 0;
+            GPROJT_CHECK(band.load[i] >= 0 && band.load[i] <= band.capacity[i]);
+            for (c = band.start[i]; c < band.start[i + 1]; ++c) {
+                for (k = band.start[band.to[c]]; band.to[k] != i;) ++k;
+                GPROJT_CHECK(band.out[c] == band.in[k]);
+                in += band.in[c], out += band.out[c];
             }
+            GPROJT_CHECK(band.ends[i] & GPROJI_BAND_SOURCE ? in <= band.load[i] : in == band.load[i]);
+            GPROJT_CHECK(band.ends[i] & GPROJI_BAND_SINK ? out <= band.load[i] : out == band.load[i]);
+            flow += band.load[i] - in;
         }
-        for (i = 0; i < band.nodes; ++i)
-            GPROJT_CHECK(band.ends[i] & GPROJI_BAND_SINK ? out[i] <= band.load[i] : out[i] == band.load[i]);
         GPROJT_CHECK(flow == largest_flow(&band));
     }
 }
@@ -697,7 +693,7 @@ static void check_cut(gproji_nd *nd, gproji_nd_cut *cut, unsigned char *side) {
     GPROJT_CHECK(cost < HUGE_VAL && weigh_sides(nd, side, weight, beside));
     GPROJT_NEAR(cost, gproji_nd_cost(nd, weight[0], weight[1], weight[2], beside), 0);
     for (i = 0; i < nd->band.nodes; ++i)
-        if (side[nd->band.id[i]] == 2) units += nd->band.unit[i + 1] - nd->band.unit[i];
+        if (side[nd->band.id[i]] == 2) units += nd->band.capacity[i];
     if (nd->band.nodes < 120) GPROJT_CHECK(units == largest_flow(&nd->band));
 }
 
@@ -901,7 +897,7 @@ static bool analyse_with(const gproj_host *host, void *user) {
     const graph *g = (const graph *)user;
     gproj_cholesky *c = gproj_cholesky_create(host);
     gproj_code code = GPROJ_ERROR_MEMORY;
-    if (c) code = gproji_cholesky_analyse_blocks(c, g->nodes, g->weight, g->start, g->adjacent, NULL);
+    if (c) code = gproji_cholesky_analyse_blocks(c, &g->view, GPROJ_ORDERING_BEST);
     GPROJT_CHECK(code == GPROJ_OK || code == GPROJ_ERROR_MEMORY);
     if (code == GPROJ_OK) GPROJT_CHECK(is_permutation(g->nodes, c->symbolic.order));
     gproj_cholesky_destroy(c);
