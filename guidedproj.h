@@ -2514,25 +2514,6 @@ GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capaci
     return moved;
 }
 
-/* A growing array of integers; zeros at first. */
-typedef struct gproji_ints {
-    int32_t *data;
-    size_t count, capacity;
-} gproji_ints;
-
-/* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
-GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
-    if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
-    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
-    if (ints->count >= ints->capacity) return false;
-    ints->data[ints->count++] = value;
-    return true;
-}
-
-GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
-    gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
-}
-
 GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_heap heap;
     memcpy(&heap, object, sizeof heap);
@@ -2617,15 +2598,48 @@ GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, 
     return block;
 }
 
-/* Shrinks the block taken last to `count` elements, which may move it. NULL, but not pool->failed, when a host without
-   reallocation has no memory for a second one; the block then stays. */
-GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes = sizeof(gproji_link) + (size_t)count * size;
-    gproji_link *moved = (gproji_link *)gproji_retake(pool->heap, pool->last, pool->last->bytes, bytes, 1);
-    if (!moved) return NULL;
+/* Changes a block's count, which may move it; a NULL block is taken. NULL, and pool->failed, when there is no memory;
+   the old block stays. */
+GPROJI_INTERNAL void *gproji_pool_retake(gproji_pool *pool, void *block, size_t count, size_t size) {
+    size_t bytes = gproji_add_bytes(sizeof(gproji_link), gproji_bytes(count, size));
+    gproji_link **at = &pool->last, *moved;
+    if (!block) return gproji_pool_take(pool, (int64_t)count, size);
+    while (*at + 1 != (gproji_link *)block) at = &(*at)->before;
+    moved = (gproji_link *)gproji_retake(pool->heap, *at, (*at)->bytes, bytes, 1);
+    if (!moved) {
+        pool->failed = true;
+        return NULL;
+    }
     moved->bytes = bytes;
-    pool->last = moved;
+    *at = moved;
     return moved + 1;
+}
+
+/* Like gproji_grow, for an array in the pool. */
+GPROJI_INTERNAL void *gproji_pool_grow(gproji_pool *pool, void *block, size_t *capacity, size_t needed, size_t size) {
+    size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
+    void *moved;
+    if (needed <= *capacity) return block;
+    if (wanted < needed) wanted = needed;
+    moved = gproji_pool_retake(pool, block, wanted, size);
+    if (!moved) return block;
+    *capacity = wanted;
+    return moved;
+}
+
+/* A growing array of integers; zeros at first. */
+typedef struct gproji_ints {
+    int32_t *data; /* in the pool that integers are added with */
+    size_t count, capacity;
+} gproji_ints;
+
+/* Appends one; false, and pool->failed, when there is no memory, or with GPROJI_INTS_MAX integers. */
+GPROJI_INTERNAL bool gproji_ints_add(gproji_pool *pool, gproji_ints *ints, int32_t value) {
+    if (ints->count >= (size_t)GPROJI_INTS_MAX) pool->failed = true;
+    if (pool->failed) return false;
+    ints->data = (int32_t *)gproji_pool_grow(pool, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
+    if (!pool->failed) ints->data[ints->count++] = value;
+    return !pool->failed;
 }
 
 /* ============================================================================================================
@@ -6144,7 +6158,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
             c->kernels, front->row_nodes, sy->row_at + front->rows, front->width + gproji_panel_shift(front->width),
             front->below, sy->relative + front->rows, up->width + gproji_panel_shift(up->width), c->piece + start[f]);
     }
-    c->piece = (gproji_piece *)gproji_pool_shrink(&c->kept, start[sy->fronts], sizeof *c->piece);
+    c->piece = (gproji_piece *)gproji_pool_retake(&c->kept, c->piece, (size_t)start[sy->fronts], sizeof *c->piece);
     return c->piece != NULL;
 }
 
@@ -9565,7 +9579,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
         }
     }
     d->link_start[d->elements] = count;
-    d->link_node = (int32_t *)gproji_pool_shrink(&d->pool, count, sizeof(int32_t));
+    d->link_node = (int32_t *)gproji_pool_retake(&d->pool, d->link_node, (size_t)count, sizeof(int32_t));
     if (!d->link_node) return false;
     d->on = gproji_schur_number(s, mark);
     return true;
@@ -13632,8 +13646,8 @@ typedef struct gproji_reader {
     int32_t line;     /* from 1 */
     const char *word; /* the last word scanned, not NUL-terminated */
     size_t word_size;
-    gproji_heap *heap;
-    gproj_code code; /* the first failure; nothing is read after it */
+    gproji_pool pool; /* all arrays */
+    gproj_code code;  /* the first failure; nothing is read after it */
     gproj_error *error;
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
@@ -13761,7 +13775,7 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
 
 /* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
-    if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
+    if (reader->code || gproji_ints_add(&reader->pool, ints, value)) return;
     if (ints->count < (size_t)GPROJI_INTS_MAX)
         reader->code = gproji_fail_memory(reader->error);
     else
@@ -13775,8 +13789,8 @@ GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3]
                     (int32_t)GPROJI_VERTICES_MAX);
     gproji_push(reader, &reader->vertex_line, line);
     if (reader->code) return;
-    reader->position =
-        (double *)gproji_grow(reader->heap, reader->position, &reader->position_capacity, needed, 3 * sizeof(double));
+    reader->position = (double *)gproji_pool_grow(&reader->pool, reader->position, &reader->position_capacity, needed,
+                                                  3 * sizeof(double));
     if (reader->position_capacity < needed)
         reader->code = gproji_fail_memory(reader->error);
     else
@@ -14043,7 +14057,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, con
     gproj_code code;
     memset(&reader, 0, sizeof reader);
     reader.text = text, reader.size = size, reader.line = 1;
-    reader.heap = &object->heap, reader.error = error;
+    reader.error = error;
+    gproji_pool_start(&reader.pool, &object->heap);
     code = gproji_read_text(&reader, format, object);
     /* Only after a failure: an OBJ may begin with anything. */
     foreign = code ? gproji_foreign_format(text, size) : NULL;
@@ -14054,14 +14069,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, con
                     "or assimp",
                     foreign);
     }
-    gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
-    gproji_ints_give(reader.heap, &reader.vertex_line);
-    gproji_ints_give(reader.heap, &reader.face_line);
-    gproji_ints_give(reader.heap, &reader.face_degree);
-    gproji_ints_give(reader.heap, &reader.face_vertex);
-    gproji_ints_give(reader.heap, &reader.polyline_start);
-    gproji_ints_give(reader.heap, &reader.polyline_vertex);
-    gproji_ints_give(reader.heap, &reader.polyline_line);
+    gproji_pool_give_all(&reader.pool);
     return code;
 }
 
@@ -17616,21 +17624,18 @@ typedef struct gproji_pattern {
 
 /* A patch under construction, with local numbers for vertices and quads. */
 typedef struct gproji_patch {
-    gproji_heap *heap;
+    gproji_pool pool; /* all arrays */
     int32_t sides;
     int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
     int32_t *side[GPROJI_PATCH_SIDES]; /* vertices along each side as it is now, both ends included */
-    int32_t *block;                    /* holds all sides */
-    size_t block_size;
-    gproji_ints quad; /* 4 vertices each */
-    gproji_ints loop; /* the finished boundary from the pattern's corner 0 */
-    gproji_ints uses; /* faces at each vertex */
+    gproji_ints quad;                  /* 4 vertices each */
+    gproji_ints loop;                  /* the finished boundary from the pattern's corner 0 */
+    int32_t *uses;                     /* faces at each vertex */
     int32_t vertices;
 } gproji_patch;
 
 typedef struct gproji_filling {
-    gproji_heap *heap;
-    gproji_pool pool; /* holds `seen` and `border` */
+    gproji_pool pool; /* all arrays; a function that only adds to them leaves the look at pool.failed to the caller */
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
@@ -17654,13 +17659,11 @@ typedef struct gproji_filling {
     int32_t cut_vertices;   /* then those on cuts */
 } gproji_filling;
 
-GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
-                                      int32_t d) {
-    size_t at = ints->count;
-    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, at + 4, sizeof(int32_t));
-    if (ints->capacity < at + 4) return false;
-    ints->data[at] = a, ints->data[at + 1] = b, ints->data[at + 2] = c, ints->data[at + 3] = d, ints->count += 4;
-    return true;
+GPROJI_INTERNAL void gproji_add_quad(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c, int32_t d) {
+    gproji_ints_add(pool, quad, a);
+    gproji_ints_add(pool, quad, b);
+    gproji_ints_add(pool, quad, c);
+    gproji_ints_add(pool, quad, d);
 }
 
 /* -- patterns: their equations -- */
@@ -17827,13 +17830,6 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
 
 /* -- patterns: their quads -- */
 
-GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
-    gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
-    gproji_ints_give(patch->heap, &patch->quad);
-    gproji_ints_give(patch->heap, &patch->loop);
-    gproji_ints_give(patch->heap, &patch->uses);
-}
-
 GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
 
 /* Does a strip run from corner i over flat corners to another, *to, that is not flat? */
@@ -17856,13 +17852,12 @@ GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int
 }
 
 /* Adds a strip of quads along sides i to to - 1 (counted on beyond the last). */
-GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
+GPROJI_INTERNAL void gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
     int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
     int32_t outer = patch->vertices;
     for (side = i; side < to; ++side) {
         int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
-        for (j = 0; j < n; ++j)
-            if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
+        for (j = 0; j < n; ++j) gproji_add_quad(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
         outer += n;
     }
     /* One edge more on the side before and on the side after; then the new sides outside. */
@@ -17875,24 +17870,21 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
             if (j == patch->edges[side % patch->sides]) patch->vertices = outer + j;
         }
     ++patch->vertices;
-    return true;
 }
 
-/* Builds a patch whose sides have these lengths. False without memory; give the patch back in any case. */
+/* Builds a patch whose sides have these lengths. False without memory; give the pool back in any case. */
 GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, const gproji_pattern *p,
                                         const int32_t *length) {
-    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n = 0;
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n;
+    gproji_pool *pool = &patch->pool;
     size_t q;
     /* 1. Room for sides as long as they become. */
     memset(patch, 0, sizeof *patch);
-    patch->heap = heap, patch->sides = p->sides;
-    for (i = 0; i < p->sides; ++i) patch->block_size += (size_t)length[i] + 1;
-    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
-    if (!patch->block) return false;
-    for (i = 0; i < p->sides; ++i) {
-        patch->side[i] = patch->block + n;
-        n += length[(i + p->first) % p->sides] + 1;
-    }
+    gproji_pool_start(pool, heap);
+    patch->sides = p->sides;
+    for (i = 0; i < p->sides; ++i)
+        patch->side[i] = gproji_take_ints(pool, (int64_t)length[(i + p->first) % p->sides] + 1);
+    if (pool->failed) return false;
     /* 2. The core, numbered by rows from below, and its sides along the walk around it. */
     for (i = 0; i < p->edges; ++i) all += p->edge[i];
     around = 2 * (rows + all);
@@ -17914,29 +17906,26 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < rows; ++i)
         for (j = 0; j < all; ++j) {
             int32_t v = i * (all + 1) + j;
-            if (!gproji_ints_add4(heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+            gproji_add_quad(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
         }
     /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
-        for (k = 0; k < p->strip[i]; ++k)
-            if (!gproji_add_strip(patch, i, i + 1)) return false;
+        for (k = 0; k < p->strip[i]; ++k) gproji_add_strip(patch, i, i + 1);
     for (i = 0; i < p->sides; ++i)
-        if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
+        if (gproji_has_long_strip(p->flat, p->sides, i, &k)) gproji_add_strip(patch, i, k);
     /* 4. The boundary as a loop, in a ring if one is wanted. */
     for (i = 0; i < p->sides; ++i)
-        for (j = 0; j < patch->edges[i]; ++j)
-            if (!gproji_ints_add(heap, &patch->loop, patch->side[i][j])) return false;
+        for (j = 0; j < patch->edges[i]; ++j) gproji_ints_add(pool, &patch->loop, patch->side[i][j]);
     n = (int32_t)patch->loop.count;
     for (i = 0; p->ring && i < n; ++i) {
         int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        if (!gproji_ints_add4(heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+        gproji_add_quad(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
     }
     for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
     /* 5. Faces at each vertex. */
-    for (i = 0; i < patch->vertices; ++i)
-        if (!gproji_ints_add(heap, &patch->uses, 0)) return false;
-    for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
-    return true;
+    patch->uses = (int32_t *)gproji_pool_take_zeroed(pool, patch->vertices, sizeof *patch->uses);
+    for (q = 0; !pool->failed && q < patch->quad.count; ++q) ++patch->uses[patch->quad.data[q]];
+    return !pool->failed;
 }
 
 /* -- the plane -- */
@@ -18059,7 +18048,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
         f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
     }
-    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->pool.heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
     if (i < f->count)
         return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
                            "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
@@ -18089,7 +18078,6 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     const gproj_fill_options *o = &f->options;
     const double *p = f->points;
     int32_t i, n;
-    bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_refuse(f->error, "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                              o->corner_count > 1 ? " in an array that is NULL" : "");
@@ -18102,31 +18090,32 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
                                "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
                                c, before);
-        taken = taken && gproji_ints_add(f->heap, &f->corner, c);
+        gproji_ints_add(&f->pool, &f->corner, c);
     }
-    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i) { /* as gproj_form_is_corner does with vertices */
+    for (i = 0; i < f->count && o->corner_count == 0; ++i) { /* as gproj_form_is_corner does with vertices */
         int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
         if (gproji_turns(p + 3 * (size_t)before, p + 3 * (size_t)i, p + 3 * (size_t)after))
-            taken = gproji_ints_add(f->heap, &f->corner, i);
+            gproji_ints_add(&f->pool, &f->corner, i);
     }
-    if (taken && f->corner.count < 2) { /* from the only corner, or the first point */
+    if (f->corner.count < 2) { /* from the only corner, or the first point */
         int32_t from = f->corner.count ? f->corner.data[0] : 0;
         double all = gproji_length_between(f, from, from + f->count), at = 0;
         f->corner.count = 0;
-        taken = gproji_ints_add(f->heap, &f->corner, from);
-        for (n = 1, i = from; taken && i + 1 < from + f->count && n < 4; ++i) {
+        gproji_ints_add(&f->pool, &f->corner, from);
+        for (n = 1, i = from; i + 1 < from + f->count && n < 4; ++i) {
             double step = gproji_length_between(f, i, i + 1);
             at += step;
             if (at + step / 2 < all * n / 4 && from + f->count - 2 - i >= 4 - n) continue;
-            taken = gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count);
+            gproji_ints_add(&f->pool, &f->corner, (i + 1) % f->count);
             ++n;
         }
     }
+    if (f->pool.failed) return gproji_fail_memory(f->error);
     f->sides = (int32_t)f->corner.count;
-    if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
+    if (o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
         return gproji_refuse(f->error, "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
                              o->subdivisions ? "" : " by a NULL array", f->sides);
-    return taken ? GPROJ_OK : gproji_fail_memory(f->error);
+    return GPROJ_OK;
 }
 
 /* The points along a side, from the first to the last, counted on beyond the array's end. */
@@ -18195,13 +18184,13 @@ GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     int32_t side, from, to, *edges, sum = 0, change = 0;
     f->edge_length = f->options.edge_length;
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
-    if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
+    gproji_ints_add(&f->pool, &f->start, 0);
     for (side = 0; side < f->sides; ++side) {
         int32_t n = f->options.side_count ? f->options.subdivisions[side] : 0;
         gproji_side_points(f, side, &from, &to);
-        if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
-            return gproji_fail_memory(f->error);
+        gproji_ints_add(&f->pool, &f->start, f->options.keep_points ? to - from : n);
     }
+    if (f->pool.failed) return gproji_fail_memory(f->error);
     edges = f->start.data + 1;
     if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
     for (side = 0; side < f->sides; ++side) {
@@ -18229,13 +18218,12 @@ GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    size_t needed = (size_t)f->vertices + 1;
-    f->flat = (double *)gproji_grow(f->heap, f->flat, &f->flat_capacity, needed, 2 * sizeof(double));
-    if (f->flat_capacity < needed) return false;
-    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
+GPROJI_INTERNAL void gproji_add_flat(gproji_filling *f, double x, double y) {
+    size_t v = (size_t)f->vertices;
+    f->flat = (double *)gproji_pool_grow(&f->pool, f->flat, &f->flat_capacity, v + 1, 2 * sizeof(double));
+    if (f->pool.failed) return;
+    f->flat[2 * v] = x, f->flat[2 * v + 1] = y;
     ++f->vertices;
-    return true;
 }
 
 /* Places the boundary's vertices and makes the first outline, which follows it all. */
@@ -18270,13 +18258,13 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
         bool corner = i == f->start.data[side];
         side += corner;
         gproji_sub3(f->border + 3 * (size_t)i, f->points, d);
-        if (!gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up)) ||
-            !gproji_ints_add(f->heap, &f->polygon, 2 * i + corner))
-            return gproji_fail_memory(f->error);
+        gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up));
+        gproji_ints_add(&f->pool, &f->polygon, 2 * i + corner);
     }
-    if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    gproji_ints_add(&f->pool, &f->patch, f->boundary);
     /* A simple curve may have chords that cross. */
-    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (f->pool.failed || !gproji_find_crossing(f->pool.heap, f->flat, f->boundary, &i, &j))
+        return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     for (from = 0; f->start.data[from + 1] <= i;) ++from;
     for (to = 0; f->start.data[to + 1] <= j;) ++to;
@@ -18439,54 +18427,49 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
 }
 
 /* Appends the outline on one side of a cut: places i to j, then the cut's inner vertices, forward or backward. */
-GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
+GPROJI_INTERNAL void gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
     gproji_outline o;
-    for (k = i; k <= j; ++k)
-        if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
+    for (k = i; k <= j; ++k) gproji_ints_add(&f->pool, &f->polygon, f->polygon.data[start + k % count]);
     to = (int32_t)f->polygon.count - 1;
-    for (k = 0; k < inner; ++k)
-        if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
-    if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    for (k = 0; k < inner; ++k) gproji_ints_add(&f->pool, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)));
+    gproji_ints_add(&f->pool, &f->patch, (int32_t)f->polygon.count);
+    if (f->pool.failed) return;
     o = gproji_outline_of(f, from, (int32_t)f->polygon.count);
     for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
         int32_t at = end ? to - from : 0;
         o.entry[at] = (o.entry[at] & ~1) | (gproji_outline_angle(&o, at) < GPROJI_OBTUSE);
     }
-    return true;
 }
 
-/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. False without memory. */
-GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
+/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. */
+GPROJI_INTERNAL void gproji_cut_outlines(gproji_filling *f) {
     size_t at;
     int32_t start, k;
-    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+    for (at = 0, start = 0; at < f->patch.count && !f->pool.failed; start = abs(f->patch.data[at++])) {
         gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
         gproji_cut_line cut = {0, 0, 0, HUGE_VAL};
         gproji_pool pool;
         int32_t a, b, first = f->vertices;
-        bool measured;
-        gproji_pool_start(&pool, f->heap);
-        measured = gproji_measure_outline(&o, &pool);
-        if (measured) cut = gproji_find_cut(&o);
+        gproji_pool_start(&pool, f->pool.heap);
+        if (gproji_measure_outline(&o, &pool))
+            cut = gproji_find_cut(&o);
+        else
+            f->pool.failed = true;
         gproji_pool_give_all(&pool);
-        if (!measured) return false;
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
             double t = (double)k / cut.edges;
-            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
-                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
-                return false;
+            gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                            (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]);
         }
-        if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
-            !gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false))
-            return false;
+        gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true);
+        gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false);
         f->patch.data[at] = -f->patch.data[at];
     }
     f->cut_vertices = f->vertices;
-    return true;
 }
 
 /* -- patches -- */
@@ -18494,7 +18477,7 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
 /* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other boundary vertices,
    or 3 on the curve or a ring along it? `at`: the outline place at the pattern's first corner. Destroys `uses`. */
 GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
-    int32_t i, side, from = at, *uses = patch->uses.data;
+    int32_t i, side, from = at, *uses = patch->uses;
     for (side = 0; side < patch->sides; ++side)
         for (i = 0; i < patch->edges[side]; ++i, ++at) {
             int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
@@ -18522,9 +18505,9 @@ GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, const gproji_outli
             p->ring = ring != 0;
             for (k = 0; k < sides && !ring; ++k)
                 if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
-            done = gproji_build_patch(&patch, f->heap, p, length);
+            done = gproji_build_patch(&patch, f->pool.heap, p, length);
             if (done && gproji_patch_is_good(&patch, o, place[p->first])) *chosen = *p, ++good;
-            gproji_patch_give(&patch);
+            gproji_pool_give_all(&patch.pool);
             if (!done) return false;
         }
     }
@@ -18565,9 +18548,9 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
     /* 2. The pattern. */
     if (!gproji_choose_pattern(f, o, sides, place, length, flat, &p)) return false;
-    done = gproji_build_patch(&patch, f->heap, &p, length);
+    done = gproji_build_patch(&patch, f->pool.heap, &p, length);
     /* 3. Global numbers: from the outline along the boundary, new ones inside, at the boundary's mean as yet. */
-    number = patch.uses.data, n = (int32_t)patch.loop.count;
+    number = patch.uses, n = (int32_t)patch.loop.count;
     for (i = 0; done && i < patch.vertices; ++i) number[i] = -1;
     for (i = 0; done && i < n; ++i) {
         int32_t v = gproji_outline_vertex(o, place[p.first] + i);
@@ -18577,12 +18560,11 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
         number[i] = f->vertices;
-        done = gproji_add_flat(f, x, y);
+        gproji_add_flat(f, x, y);
     }
-    for (q = 0; done && q < patch.quad.count; ++q)
-        done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
-    gproji_patch_give(&patch);
-    return done;
+    for (q = 0; done && q < patch.quad.count; ++q) gproji_ints_add(&f->pool, &f->quad, number[patch.quad.data[q]]);
+    gproji_pool_give_all(&patch.pool);
+    return done && !f->pool.failed;
 }
 
 /* -- positions -- */
@@ -18603,7 +18585,7 @@ typedef struct gproji_pairs {
 /* Takes the arrays for `count` pairs of unknowns. False: no memory; gproji_pairs_give is due either way. */
 GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
     memset(m, 0, sizeof *m);
-    gproji_pool_start(&m->pool, f->heap);
+    gproji_pool_start(&m->pool, f->pool.heap);
     m->unknowns = unknowns, m->count = count;
     m->pair = gproji_take_ints(&m->pool, 2 * count);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
@@ -18740,7 +18722,7 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
 }
 
 /* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
-GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
+GPROJI_INTERNAL void gproji_add_distortion(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
     for (corner = 0; corner < 4;
@@ -18778,7 +18760,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
-    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
+    for (q = 0; q < quads; ++q) gproji_add_distortion(u, q);
     outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
     u->failed = outcome == GPROJ_FACTOR_FAILED;
     if (outcome != GPROJ_FACTORED) return false;
@@ -18851,7 +18833,7 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     gproji_pool pool;
     double *height;
     gproj_code code = GPROJ_OK;
-    gproji_pool_start(&pool, f->heap);
+    gproji_pool_start(&pool, f->pool.heap);
     height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
     if (!gproji_draft_take(&draft, &pool, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides))
         code = gproji_fail_memory(f->error);
@@ -18884,8 +18866,8 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
     return code;
 }
 
-/* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. False without memory. */
-GPROJI_INTERNAL bool gproji_lay_rings(gproji_filling *f) {
+/* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. */
+GPROJI_INTERNAL void gproji_lay_rings(gproji_filling *f) {
     int32_t n = f->boundary, ring, i;
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
@@ -18893,13 +18875,11 @@ GPROJI_INTERNAL bool gproji_lay_rings(gproji_filling *f) {
             double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
             depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
-            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
-                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
-                return false;
+            gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x);
+            gproji_add_quad(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
         }
     f->curve_vertices = f->vertices;
     for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
-    return true;
 }
 
 /* Fills all outlines in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
@@ -18915,11 +18895,11 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
         if (o.count > 0 && !gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
     /* 2. Valences inside, before the work on positions. */
-    count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    count = (int32_t *)gproji_take_zeroed(f->pool.heap, (size_t)f->vertices, sizeof *count);
     if (!count) return gproji_fail_memory(f->error);
     for (at = 0; at < f->quad.count; ++at)
         if (f->quad.data[at] >= f->boundary) most = gproji_max(most, ++count[f->quad.data[at]]);
-    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    gproji_give(f->pool.heap, count, (size_t)f->vertices, sizeof *count);
     if (most > valence) return GPROJ_OK;
     /* 3. Positions: good if all corners turn left. */
     code = gproji_place_vertices(f);
@@ -18949,18 +18929,21 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     object = gproji_mesh_begin(host, error);
     if (!object) return NULL;
     memset(&f, 0, sizeof f);
-    f.heap = &object->heap, f.host = host, f.error = error;
+    f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
-    gproji_pool_start(&f.pool, f.heap);
+    gproji_pool_start(&f.pool, &object->heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_count_side_edges(&f);
     if (!code) code = gproji_divide_curve(&f);
     /* 1. All cuts before the first patch: vertices on cuts are numbered before those inside. */
-    if (!code && !(gproji_lay_rings(&f) && gproji_cut_outlines(&f))) code = gproji_fail_memory(error);
-    if (!code) laid = (double *)gproji_pool_take(&f.pool, 2 * (int64_t)f.cut_vertices, sizeof *laid);
-    if (!code && !laid) code = gproji_fail_memory(error);
+    if (!code) {
+        gproji_lay_rings(&f);
+        gproji_cut_outlines(&f);
+        laid = (double *)gproji_pool_take(&f.pool, 2 * (int64_t)f.cut_vertices, sizeof *laid);
+    }
+    if (!code && f.pool.failed) code = gproji_fail_memory(error);
     if (!code) memcpy(laid, f.flat, 2 * (size_t)f.cut_vertices * sizeof *laid);
     /* 2. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
     variant = f.options.variant;
@@ -18992,12 +18975,6 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
         if (i == 0 || angle > found.max_angle) found.max_angle = angle;
     }
     gproji_pool_give_all(&f.pool);
-    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
-    gproji_ints_give(f.heap, &f.corner);
-    gproji_ints_give(f.heap, &f.start);
-    gproji_ints_give(f.heap, &f.polygon);
-    gproji_ints_give(f.heap, &f.patch);
-    gproji_ints_give(f.heap, &f.quad);
     if (info) *info = found;
     return gproji_mesh_done(object, code);
 }
