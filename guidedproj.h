@@ -12683,26 +12683,6 @@ typedef struct gproji_soup {
     const int32_t *polyline_vertex;
 } gproji_soup;
 
-/* A soup in arrays of its own, for those who make polygons. */
-typedef struct gproji_draft {
-    gproji_soup soup; /* shows the arrays; counts begin at 0 */
-    double *position;
-    int32_t *degree, *corner, *start, *vertex;
-} gproji_draft;
-
-/* Takes room for at most these counts; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, int64_t vertices, int64_t faces,
-                                       int64_t corners, int64_t polylines, int64_t polyline_vertices) {
-    memset(draft, 0, sizeof *draft);
-    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
-    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
-    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
-    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
-    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
-    if (draft->start) draft->start[0] = 0;
-    return !pool->failed;
-}
-
 /* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
     int32_t *corner_vertex; /* corner_count: face_vertex; turned faces are reversed here */
@@ -13098,6 +13078,44 @@ GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
     gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object), error);
     if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
+}
+
+/* A mesh in the making: a soup in arrays of its own, for those who make polygons. */
+typedef struct gproji_draft {
+    gproji_mesh_object *object;
+    gproji_pool pool; /* the soup's arrays, and others for the work */
+    gproj_error *error;
+    gproji_soup soup; /* shows the arrays; counts begin at 0 */
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+} gproji_draft;
+
+/* Ends a draft: builds the mesh unless there is an error already. Returns it, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_mesh *gproji_draft_end(gproji_draft *draft, gproj_code code) {
+    if (!code) code = gproji_mesh_build(draft->object, &draft->soup, draft->error);
+    gproji_pool_give_all(&draft->pool);
+    return gproji_mesh_done(draft->object, code);
+}
+
+/* Begins a draft with room for at most these counts; false, and nothing is kept, when there is no memory. */
+GPROJI_INTERNAL bool gproji_draft_begin(gproji_draft *draft, int64_t vertices, int64_t faces, int64_t corners,
+                                        int64_t polylines, int64_t polyline_vertices, const gproj_host *host,
+                                        gproj_error *error) {
+    gproji_pool *pool = &draft->pool;
+    memset(draft, 0, sizeof *draft);
+    draft->error = error;
+    draft->object = gproji_mesh_begin(host, error);
+    if (!draft->object) return false;
+    gproji_pool_start(pool, &draft->object->heap);
+    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
+    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
+    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
+    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
+    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
+    if (draft->start) draft->start[0] = 0;
+    if (!pool->failed) return true;
+    gproji_draft_end(draft, gproji_fail_memory(error));
+    return false;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
@@ -14594,18 +14612,11 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const g
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     int32_t p, i, f, h, k, c = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_mesh_object *object = gproji_mesh_begin(level->host, level->error);
     gproji_draft draft;
-    gproji_pool pool;
-    gproj_code code;
     int32_t *corner, *vertex;
-    if (!object) return NULL;
-    gproji_pool_start(&pool, &level->heap);
-    if (!gproji_draft_take(&draft, &pool, next.vertices, next.faces, next.corners, mesh->polyline_count,
-                           next.polyline_vertices)) {
-        gproji_pool_give_all(&pool);
-        return gproji_mesh_done(object, gproji_fail_memory(level->error));
-    }
+    if (!gproji_draft_begin(&draft, next.vertices, next.faces, next.corners, mesh->polyline_count,
+                            next.polyline_vertices, level->host, level->error))
+        return NULL;
     corner = draft.corner, vertex = draft.vertex;
     gproj_stencil_apply(stencil, 3, mesh->position, draft.position);
     /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
@@ -14633,9 +14644,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const g
         draft.start[p + 1] = count;
     }
     draft.soup.vertex_count = (int32_t)next.vertices, draft.soup.polyline_count = mesh->polyline_count;
-    code = gproji_mesh_build(object, &draft.soup, level->error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(object, code);
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 /* -- functions on stencils -- */
@@ -15580,8 +15589,7 @@ typedef struct gproji_edit_object {
     gproj_edit edit;
     gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
-    int32_t *number[GPROJI_EDIT_NUMBERED]; /* of vertices, edges, faces in the last mesh made */
-    int32_t number_count[GPROJI_EDIT_NUMBERED];
+    gproji_pool numbers; /* the numbers in the last mesh made, which `edit` shows */
     int32_t stamp;
 } gproji_edit_object;
 
@@ -15613,9 +15621,6 @@ GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
     edit->face_parent = s->face_parent;
     edit->next = view->next = s->next, edit->prev = view->prev = s->prev;
     edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
-    edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
-    edit->edge_number = object->number[GPROJI_EDIT_EDGE];
-    edit->face_number = object->number[GPROJI_EDIT_FACE];
 }
 
 GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
@@ -15992,11 +15997,9 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
 
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
-    int32_t kind;
     if (!object) return;
     gproji_edit_give(&object->heap, &object->now);
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind)
-        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+    gproji_pool_give_all(&object->numbers);
     gproji_destroy_object(object, sizeof *object);
 }
 
@@ -16008,6 +16011,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
     object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
+    gproji_pool_start(&object->numbers, &object->heap);
     s = &object->now;
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
     s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
@@ -16048,27 +16052,21 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
-    gproji_mesh_object *made;
+    gproj_mesh *made;
     gproji_draft draft;
-    gproji_pool pool;
+    gproji_pool numbers; /* stay with the edit if all goes well */
     gproj_code code;
     gproji_soup *soup = &draft.soup;
-    int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
-    int32_t *vertex, *edge, *face, kind, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
-    bool taken = true;
-    if (!object) return NULL;
-    made = gproji_mesh_begin(host, error);
-    if (!made) return NULL;
-    gproji_pool_start(&pool, &object->heap);
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
-        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        taken = taken && number[kind];
-    }
-    vertex = number[GPROJI_EDIT_VERTEX], edge = number[GPROJI_EDIT_EDGE], face = number[GPROJI_EDIT_FACE];
-    if (!gproji_draft_take(&draft, &pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
-                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]))
-        taken = false;
-    code = taken ? GPROJ_OK : gproji_fail_memory(error);
+    int32_t *vertex, *edge, *face, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
+    if (!object || !gproji_draft_begin(&draft, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                                       s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count,
+                                       s->count[GPROJI_EDIT_POLYLINE_VERTEX], host, error))
+        return NULL;
+    gproji_pool_start(&numbers, &object->heap);
+    vertex = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_VERTEX]);
+    edge = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_EDGE]);
+    face = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_FACE]);
+    code = numbers.failed ? gproji_fail_memory(error) : GPROJ_OK;
     /* 1. Vertices; a merged one gets the number that the lower one has already. */
     for (v = 0; !code && v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
@@ -16093,23 +16091,23 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
         if (end < begin + 2) end = begin;
         if (end > begin) draft.start[++soup->polyline_count] = end;
     }
-    if (!code) code = gproji_mesh_build(made, soup, error);
+    made = gproji_draft_end(&draft, code);
+    if (!made) {
+        gproji_pool_give_all(&numbers);
+        return NULL;
+    }
     /* 4. Edges, which the mesh has numbered: both are walked side by side. */
-    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[face[f]];
-        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
+        h = s->face_halfedge[f], k = made->face_halfedge[face[f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->next[k]) edge[h / 2] = k / 2;
     }
-    for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
+    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) { /* new numbers replace the old ones, or are given back */
-        int32_t *other = code ? number[kind] : object->number[kind];
-        gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
-        if (!code) object->number[kind] = number[kind], object->number_count[kind] = s->count[kind];
-    }
-    gproji_edit_publish(object);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(made, code);
+    gproji_pool_give_all(&object->numbers);
+    object->numbers = numbers;
+    edit->vertex_number = vertex, edit->edge_number = edge, edit->face_number = face;
+    return made;
 }
 
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
@@ -16431,10 +16429,10 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     return number;
 }
 
-/* Makes the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
+/* Drafts the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
    vertex_face: the face of each vertex, or NULL. */
-GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
-                                             gproji_mesh_object *made, gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
     int32_t f, e, v, k, h, g, p, i, begin, end = 0;
@@ -16487,32 +16485,26 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (i == mesh->polyline_start[p + 1]) draft->start[++soup->polyline_count] = end;
         end = draft->start[soup->polyline_count];
     }
-    return gproji_mesh_build(made, soup, error);
+    return GPROJ_OK;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
                                       gproj_error *error) {
-    gproji_mesh_object *made;
     gproji_dual dual;
-    gproji_pool pool;
-    gproj_code code;
+    gproji_pool *pool = &dual.draft.pool;
     int64_t vertices, edges, faces;
     if (!gproji_given(mesh, "mesh", error) ||
         gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
         return NULL;
-    made = gproji_mesh_begin(host, error);
-    if (!made) return NULL;
-    gproji_pool_start(&pool, &made->heap);
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
-    dual.vertex = gproji_take_ints(&pool, vertices);
-    dual.midpoint = gproji_take_ints(&pool, edges);
-    dual.seen = gproji_take_ints(&pool, faces);
-    code = gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
-                             mesh->polyline_count, mesh->polyline_start[mesh->polyline_count])
-               ? gproji_dual_build(mesh, &dual, vertex_face, made, error)
-               : gproji_fail_memory(error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(made, code);
+    if (!gproji_draft_begin(&dual.draft, faces + edges + vertices, vertices, 2 * edges + 3 * vertices,
+                            mesh->polyline_count, mesh->polyline_start[mesh->polyline_count], host, error))
+        return NULL;
+    dual.vertex = gproji_take_ints(pool, vertices);
+    dual.midpoint = gproji_take_ints(pool, edges);
+    dual.seen = gproji_take_ints(pool, faces);
+    return gproji_draft_end(&dual.draft, pool->failed ? gproji_fail_memory(error)
+                                                      : gproji_draft_dual(mesh, &dual, vertex_face, error));
 }
 
 /* ============================================================================================================
@@ -17488,10 +17480,7 @@ GPROJI_INTERNAL bool gproji_have_same_faces(const gproj_mesh *a, const gproj_mes
 
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
-    gproji_mesh_object *object;
     gproji_draft draft;
-    gproji_pool pool;
-    gproj_code code = GPROJ_OK;
     int32_t e;
     gproji_error_clear(error);
     if (!gproji_have_same_faces(mesh, offset)) {
@@ -17508,13 +17497,10 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
-    gproji_pool_start(&pool, &object->heap);
-    if (!gproji_draft_take(&draft, &pool, 4 * (int64_t)mesh->edge_count, mesh->edge_count,
-                           4 * (int64_t)mesh->edge_count, 0, 0))
-        code = gproji_fail_memory(error);
-    for (e = 0; !code && e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+    if (!gproji_draft_begin(&draft, 4 * (int64_t)mesh->edge_count, mesh->edge_count, 4 * (int64_t)mesh->edge_count, 0,
+                            0, host, error))
+        return NULL;
+    for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
         double *out = draft.position + 12 * (size_t)e;
         gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
         gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
@@ -17522,11 +17508,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
         gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
         draft.degree[e] = 4;
     }
-    for (e = 0; !code && e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
+    for (e = 0; e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
     draft.soup.vertex_count = 4 * mesh->edge_count, draft.soup.face_count = mesh->edge_count;
-    if (!code) code = gproji_mesh_build(object, &draft.soup, error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(object, code);
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
@@ -18827,28 +18811,27 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
 /* -- the mesh -- */
 
 /* Makes the mesh: positions in space, faces, and the sides as polylines. */
-GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
+GPROJI_INTERNAL gproj_mesh *gproji_build_filling(gproji_filling *f) {
     int32_t faces = (int32_t)f->quad.count / 4, side, i, v, end = 0;
     gproji_draft draft;
-    gproji_pool pool;
     double *height;
-    gproj_code code = GPROJ_OK;
-    gproji_pool_start(&pool, f->pool.heap);
-    height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
-    if (!gproji_draft_take(&draft, &pool, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides))
-        code = gproji_fail_memory(f->error);
-    for (side = 0; !code && side < f->sides; ++side) {
+    gproj_code code;
+    if (!gproji_draft_begin(&draft, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides, f->host,
+                            f->error))
+        return NULL;
+    for (side = 0; side < f->sides; ++side) {
         for (i = f->start.data[side]; i <= f->start.data[side + 1]; ++i) draft.vertex[end++] = i % f->boundary;
         draft.start[side + 1] = end;
     }
     /* Heights over the plane: the curve's, harmonic inside. */
-    for (v = 0; !code && v < f->boundary; ++v) {
+    height = (double *)gproji_pool_take(&draft.pool, f->vertices, sizeof *height);
+    for (v = 0; height && v < f->boundary; ++v) {
         double d[3];
         gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
         height[v] = gproji_dot3(d, f->normal);
     }
-    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    if (!code) memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
+    code = height ? gproji_fill_harmonically(f, f->boundary, 1, height) : gproji_fail_memory(f->error);
+    memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
     for (v = f->boundary; !code && v < f->vertices; ++v) {
         double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
@@ -18856,14 +18839,10 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
         gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
-    if (!code) {
-        gproji_fill(draft.degree, faces, 4);
-        memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
-        draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
-        code = gproji_mesh_build(object, &draft.soup, f->error);
-    }
-    gproji_pool_give_all(&pool);
-    return code;
+    gproji_fill(draft.degree, faces, 4);
+    memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
+    draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
+    return gproji_draft_end(&draft, code);
 }
 
 /* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. */
@@ -18915,8 +18894,9 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
     static const int32_t most[3] = {5, 6, INT32_MAX};
-    gproji_mesh_object *object;
+    gproji_heap heap = gproji_heap_of(host);
     gproji_filling f;
+    gproj_mesh *mesh;
     gproj_fill_info found;
     gproj_code code;
     int32_t variant, tries, i;
@@ -18926,13 +18906,11 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
-    object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
     memset(&f, 0, sizeof f);
     f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
-    gproji_pool_start(&f.pool, &object->heap);
+    gproji_pool_start(&f.pool, &heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_count_side_edges(&f);
@@ -18957,17 +18935,17 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
         code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "no filling without a quad turned over was found; divide the sides finer or mark other "
                            "corners");
-    if (!code) code = gproji_build_filling(&f, object);
+    mesh = code ? NULL : gproji_build_filling(&f);
     /* 3. Properties. */
-    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides;
-    for (at = 0; !code && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
-    for (i = f.boundary; !code && i < f.vertices; ++i) {
-        int32_t valence = gproj_mesh_valence(&object->mesh, i);
+    if (mesh) found.boundary_count = f.boundary, found.side_count = f.sides;
+    for (at = 0; mesh && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
+    for (i = f.boundary; mesh && i < f.vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(mesh, i);
         found.irregular_count += valence != 4;
         found.min_valence = i == f.boundary ? valence : gproji_min(found.min_valence, valence);
         found.max_valence = gproji_max(found.max_valence, valence);
     }
-    for (i = 0; !code && i < (int32_t)f.quad.count; ++i) {
+    for (i = 0; mesh && i < (int32_t)f.quad.count; ++i) {
         double angle = gproji_inner_angle(f.flat, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
                                           f.quad.data[gproji_quad_previous(i)]) *
                        (180 / GPROJI_PI);
@@ -18976,7 +18954,7 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     }
     gproji_pool_give_all(&f.pool);
     if (info) *info = found;
-    return gproji_mesh_done(object, code);
+    return mesh;
 }
 
 /* ============================================================================================================
