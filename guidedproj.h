@@ -2524,25 +2524,6 @@ GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capaci
     return moved;
 }
 
-/* A growing array of integers; zeros at first. */
-typedef struct gproji_ints {
-    int32_t *data;
-    size_t count, capacity;
-} gproji_ints;
-
-/* Appends one; false when there is no memory, or with GPROJI_INTS_MAX integers. */
-GPROJI_INTERNAL bool gproji_ints_add(gproji_heap *heap, gproji_ints *ints, int32_t value) {
-    if (ints->count >= (size_t)GPROJI_INTS_MAX) return false;
-    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
-    if (ints->count >= ints->capacity) return false;
-    ints->data[ints->count++] = value;
-    return true;
-}
-
-GPROJI_INTERNAL void gproji_ints_give(gproji_heap *heap, gproji_ints *ints) {
-    gproji_give(heap, ints->data, ints->capacity, sizeof(int32_t));
-}
-
 GPROJI_INTERNAL void gproji_destroy_object(void *object, size_t size) {
     gproji_heap heap;
     memcpy(&heap, object, sizeof heap);
@@ -2627,15 +2608,48 @@ GPROJI_INTERNAL void *gproji_pool_copy(gproji_pool *pool, const void *elements, 
     return block;
 }
 
-/* Shrinks the block taken last to `count` elements, which may move it. NULL, but not pool->failed, when a host without
-   reallocation has no memory for a second one; the block then stays. */
-GPROJI_INTERNAL void *gproji_pool_shrink(gproji_pool *pool, int64_t count, size_t size) {
-    size_t bytes = sizeof(gproji_link) + (size_t)count * size;
-    gproji_link *moved = (gproji_link *)gproji_retake(pool->heap, pool->last, pool->last->bytes, bytes, 1);
-    if (!moved) return NULL;
+/* Changes a block's count, which may move it; a NULL block is taken. NULL, and pool->failed, when there is no memory;
+   the old block stays. */
+GPROJI_INTERNAL void *gproji_pool_retake(gproji_pool *pool, void *block, size_t count, size_t size) {
+    size_t bytes = gproji_add_bytes(sizeof(gproji_link), gproji_bytes(count, size));
+    gproji_link **at = &pool->last, *moved;
+    if (!block) return gproji_pool_take(pool, (int64_t)count, size);
+    while (*at + 1 != (gproji_link *)block) at = &(*at)->before;
+    moved = (gproji_link *)gproji_retake(pool->heap, *at, (*at)->bytes, bytes, 1);
+    if (!moved) {
+        pool->failed = true;
+        return NULL;
+    }
     moved->bytes = bytes;
-    pool->last = moved;
+    *at = moved;
     return moved + 1;
+}
+
+/* Like gproji_grow, for an array in the pool. */
+GPROJI_INTERNAL void *gproji_pool_grow(gproji_pool *pool, void *block, size_t *capacity, size_t needed, size_t size) {
+    size_t wanted = *capacity < 8 ? 8 : *capacity * 2;
+    void *moved;
+    if (needed <= *capacity) return block;
+    if (wanted < needed) wanted = needed;
+    moved = gproji_pool_retake(pool, block, wanted, size);
+    if (!moved) return block;
+    *capacity = wanted;
+    return moved;
+}
+
+/* A growing array of integers; zeros at first. */
+typedef struct gproji_ints {
+    int32_t *data; /* in the pool that integers are added with */
+    size_t count, capacity;
+} gproji_ints;
+
+/* Appends one; false, and pool->failed, when there is no memory, or with GPROJI_INTS_MAX integers. */
+GPROJI_INTERNAL bool gproji_ints_add(gproji_pool *pool, gproji_ints *ints, int32_t value) {
+    if (ints->count >= (size_t)GPROJI_INTS_MAX) pool->failed = true;
+    if (pool->failed) return false;
+    ints->data = (int32_t *)gproji_pool_grow(pool, ints->data, &ints->capacity, ints->count + 1, sizeof(int32_t));
+    if (!pool->failed) ints->data[ints->count++] = value;
+    return !pool->failed;
 }
 
 /* ============================================================================================================
@@ -6104,7 +6118,7 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
             c->kernels, front->row_nodes, sy->row_at + front->rows, front->width + gproji_panel_shift(front->width),
             front->below, sy->relative + front->rows, up->width + gproji_panel_shift(up->width), c->piece + start[f]);
     }
-    c->piece = (gproji_piece *)gproji_pool_shrink(&c->kept, start[sy->fronts], sizeof *c->piece);
+    c->piece = (gproji_piece *)gproji_pool_retake(&c->kept, c->piece, (size_t)start[sy->fronts], sizeof *c->piece);
     return c->piece != NULL;
 }
 
@@ -9512,7 +9526,7 @@ GPROJI_INTERNAL bool gproji_schur_find(gproj_system *s, const int32_t *belongs, 
         }
     }
     d->link_start[d->elements] = count;
-    d->link_node = (int32_t *)gproji_pool_shrink(&d->pool, count, sizeof(int32_t));
+    d->link_node = (int32_t *)gproji_pool_retake(&d->pool, d->link_node, (size_t)count, sizeof(int32_t));
     if (!d->link_node) return false;
     d->on = gproji_schur_number(s, mark);
     return true;
@@ -12616,26 +12630,6 @@ typedef struct gproji_soup {
     const int32_t *polyline_vertex;
 } gproji_soup;
 
-/* A soup in arrays of its own, for those who make polygons. */
-typedef struct gproji_draft {
-    gproji_soup soup; /* shows the arrays; counts begin at 0 */
-    double *position;
-    int32_t *degree, *corner, *start, *vertex;
-} gproji_draft;
-
-/* Takes room for at most these counts; false when there is no memory. */
-GPROJI_INTERNAL bool gproji_draft_take(gproji_draft *draft, gproji_pool *pool, int64_t vertices, int64_t faces,
-                                       int64_t corners, int64_t polylines, int64_t polyline_vertices) {
-    memset(draft, 0, sizeof *draft);
-    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
-    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
-    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
-    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
-    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
-    if (draft->start) draft->start[0] = 0;
-    return !pool->failed;
-}
-
 /* Work arrays that the builder's steps share. */
 typedef struct gproji_mesh_work {
     int32_t *corner_vertex; /* corner_count: face_vertex; turned faces are reversed here */
@@ -13031,6 +13025,44 @@ GPROJI_INTERNAL gproji_mesh_object *gproji_mesh_begin(const gproj_host *host, gp
     gproji_mesh_object *object = (gproji_mesh_object *)gproji_create_object(host, sizeof(gproji_mesh_object), error);
     if (object) gproji_pool_start(&object->pool, &object->heap);
     return object;
+}
+
+/* A mesh in the making: a soup in arrays of its own, for those who make polygons. */
+typedef struct gproji_draft {
+    gproji_mesh_object *object;
+    gproji_pool pool; /* the soup's arrays, and others for the work */
+    gproj_error *error;
+    gproji_soup soup; /* shows the arrays; counts begin at 0 */
+    double *position;
+    int32_t *degree, *corner, *start, *vertex;
+} gproji_draft;
+
+/* Ends a draft: builds the mesh unless there is an error already. Returns it, or NULL and keeps nothing. */
+GPROJI_INTERNAL gproj_mesh *gproji_draft_end(gproji_draft *draft, gproj_code code) {
+    if (!code) code = gproji_mesh_build(draft->object, &draft->soup, draft->error);
+    gproji_pool_give_all(&draft->pool);
+    return gproji_mesh_done(draft->object, code);
+}
+
+/* Begins a draft with room for at most these counts; false, and nothing is kept, when there is no memory. */
+GPROJI_INTERNAL bool gproji_draft_begin(gproji_draft *draft, int64_t vertices, int64_t faces, int64_t corners,
+                                        int64_t polylines, int64_t polyline_vertices, const gproj_host *host,
+                                        gproj_error *error) {
+    gproji_pool *pool = &draft->pool;
+    memset(draft, 0, sizeof *draft);
+    draft->error = error;
+    draft->object = gproji_mesh_begin(host, error);
+    if (!draft->object) return false;
+    gproji_pool_start(pool, &draft->object->heap);
+    draft->soup.position = draft->position = (double *)gproji_pool_take(pool, vertices, 3 * sizeof(double));
+    draft->soup.face_degree = draft->degree = gproji_take_ints(pool, faces);
+    draft->soup.face_vertex = draft->corner = gproji_take_ints(pool, corners);
+    draft->soup.polyline_start = draft->start = gproji_take_ints(pool, polylines + 1);
+    draft->soup.polyline_vertex = draft->vertex = gproji_take_ints(pool, polyline_vertices);
+    if (draft->start) draft->start[0] = 0;
+    if (!pool->failed) return true;
+    gproji_draft_end(draft, gproji_fail_memory(error));
+    return false;
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *position, int32_t face_count,
@@ -13579,8 +13611,8 @@ typedef struct gproji_reader {
     int32_t line;     /* from 1 */
     const char *word; /* the last word scanned, not NUL-terminated */
     size_t word_size;
-    gproji_heap *heap;
-    gproj_code code; /* the first failure; nothing is read after it */
+    gproji_pool pool; /* all arrays */
+    gproj_code code;  /* the first failure; nothing is read after it */
     gproj_error *error;
     double *position; /* 3 * vertex_count, room for 3 * position_capacity */
     size_t vertex_count, position_capacity;
@@ -13708,7 +13740,7 @@ GPROJI_INTERNAL int64_t gproji_word_index(gproji_reader *reader, bool slashes) {
 
 /* Appends to one of the reader's arrays. */
 GPROJI_INTERNAL void gproji_push(gproji_reader *reader, gproji_ints *ints, int32_t value) {
-    if (reader->code || gproji_ints_add(reader->heap, ints, value)) return;
+    if (reader->code || gproji_ints_add(&reader->pool, ints, value)) return;
     if (ints->count < (size_t)GPROJI_INTS_MAX)
         reader->code = gproji_fail_memory(reader->error);
     else
@@ -13722,8 +13754,8 @@ GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3]
                     (int32_t)GPROJI_VERTICES_MAX);
     gproji_push(reader, &reader->vertex_line, line);
     if (reader->code) return;
-    reader->position =
-        (double *)gproji_grow(reader->heap, reader->position, &reader->position_capacity, needed, 3 * sizeof(double));
+    reader->position = (double *)gproji_pool_grow(&reader->pool, reader->position, &reader->position_capacity, needed,
+                                                  3 * sizeof(double));
     if (reader->position_capacity < needed)
         reader->code = gproji_fail_memory(reader->error);
     else
@@ -13990,7 +14022,8 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, con
     gproj_code code;
     memset(&reader, 0, sizeof reader);
     reader.text = text, reader.size = size, reader.line = 1;
-    reader.heap = &object->heap, reader.error = error;
+    reader.error = error;
+    gproji_pool_start(&reader.pool, &object->heap);
     code = gproji_read_text(&reader, format, object);
     /* Only after a failure: an OBJ may begin with anything. */
     foreign = code ? gproji_foreign_format(text, size) : NULL;
@@ -14001,14 +14034,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_read_into(gproji_mesh_object *object, con
                     "or assimp",
                     foreign);
     }
-    gproji_give(reader.heap, reader.position, reader.position_capacity, 3 * sizeof(double));
-    gproji_ints_give(reader.heap, &reader.vertex_line);
-    gproji_ints_give(reader.heap, &reader.face_line);
-    gproji_ints_give(reader.heap, &reader.face_degree);
-    gproji_ints_give(reader.heap, &reader.face_vertex);
-    gproji_ints_give(reader.heap, &reader.polyline_start);
-    gproji_ints_give(reader.heap, &reader.polyline_vertex);
-    gproji_ints_give(reader.heap, &reader.polyline_line);
+    gproji_pool_give_all(&reader.pool);
     return code;
 }
 
@@ -14533,18 +14559,11 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const g
     gproji_counts next = gproji_count_levels(mesh, level->scheme, 1);
     int32_t p, i, f, h, k, c = 0, count = 0, edges = mesh->vertex_count, faces = edges + mesh->edge_count;
     bool loop = level->scheme == GPROJ_LOOP;
-    gproji_mesh_object *object = gproji_mesh_begin(level->host, level->error);
     gproji_draft draft;
-    gproji_pool pool;
-    gproj_code code;
     int32_t *corner, *vertex;
-    if (!object) return NULL;
-    gproji_pool_start(&pool, &level->heap);
-    if (!gproji_draft_take(&draft, &pool, next.vertices, next.faces, next.corners, mesh->polyline_count,
-                           next.polyline_vertices)) {
-        gproji_pool_give_all(&pool);
-        return gproji_mesh_done(object, gproji_fail_memory(level->error));
-    }
+    if (!gproji_draft_begin(&draft, next.vertices, next.faces, next.corners, mesh->polyline_count,
+                            next.polyline_vertices, level->host, level->error))
+        return NULL;
     corner = draft.corner, vertex = draft.vertex;
     gproj_stencil_apply(stencil, 3, mesh->position, draft.position);
     /* 1. Faces: one for each corner; with Loop's scheme a fourth in the middle. */
@@ -14572,9 +14591,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_level_mesh(gproji_subdivision *level, const g
         draft.start[p + 1] = count;
     }
     draft.soup.vertex_count = (int32_t)next.vertices, draft.soup.polyline_count = mesh->polyline_count;
-    code = gproji_mesh_build(object, &draft.soup, level->error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(object, code);
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 /* -- functions on stencils -- */
@@ -15519,8 +15536,7 @@ typedef struct gproji_edit_object {
     gproj_edit edit;
     gproj_mesh view; /* the same arrays for those functions in >>mesh that go round a vertex or a face */
     gproji_edit_store now;
-    int32_t *number[GPROJI_EDIT_NUMBERED]; /* of vertices, edges, faces in the last mesh made */
-    int32_t number_count[GPROJI_EDIT_NUMBERED];
+    gproji_pool numbers; /* the numbers in the last mesh made, which `edit` shows */
     int32_t stamp;
 } gproji_edit_object;
 
@@ -15552,9 +15568,6 @@ GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
     edit->face_parent = s->face_parent;
     edit->next = view->next = s->next, edit->prev = view->prev = s->prev;
     edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
-    edit->vertex_number = object->number[GPROJI_EDIT_VERTEX];
-    edit->edge_number = object->number[GPROJI_EDIT_EDGE];
-    edit->face_number = object->number[GPROJI_EDIT_FACE];
 }
 
 GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
@@ -15931,11 +15944,9 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
 
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
-    int32_t kind;
     if (!object) return;
     gproji_edit_give(&object->heap, &object->now);
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind)
-        gproji_give(&object->heap, object->number[kind], (size_t)object->number_count[kind], sizeof(int32_t));
+    gproji_pool_give_all(&object->numbers);
     gproji_destroy_object(object, sizeof *object);
 }
 
@@ -15947,6 +15958,7 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
     object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
+    gproji_pool_start(&object->numbers, &object->heap);
     s = &object->now;
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
     s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
@@ -15987,27 +15999,21 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit) {
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error) {
     gproji_edit_object *object = gproji_edit_owner(edit, error);
     const gproji_edit_store *s = object ? &object->now : NULL;
-    gproji_mesh_object *made;
+    gproj_mesh *made;
     gproji_draft draft;
-    gproji_pool pool;
+    gproji_pool numbers; /* stay with the edit if all goes well */
     gproj_code code;
     gproji_soup *soup = &draft.soup;
-    int32_t *number[GPROJI_EDIT_NUMBERED]; /* stay with the edit if all goes well */
-    int32_t *vertex, *edge, *face, kind, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
-    bool taken = true;
-    if (!object) return NULL;
-    made = gproji_mesh_begin(host, error);
-    if (!made) return NULL;
-    gproji_pool_start(&pool, &object->heap);
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) {
-        number[kind] = (int32_t *)gproji_take(&object->heap, (size_t)s->count[kind], sizeof(int32_t));
-        taken = taken && number[kind];
-    }
-    vertex = number[GPROJI_EDIT_VERTEX], edge = number[GPROJI_EDIT_EDGE], face = number[GPROJI_EDIT_FACE];
-    if (!gproji_draft_take(&draft, &pool, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
-                           s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count, s->count[GPROJI_EDIT_POLYLINE_VERTEX]))
-        taken = false;
-    code = taken ? GPROJ_OK : gproji_fail_memory(error);
+    int32_t *vertex, *edge, *face, v, f, e, h, k, p, i, begin, end = 0, corners = 0;
+    if (!object || !gproji_draft_begin(&draft, s->count[GPROJI_EDIT_VERTEX], s->count[GPROJI_EDIT_FACE],
+                                       s->count[GPROJI_EDIT_HALFEDGE], s->polyline_count,
+                                       s->count[GPROJI_EDIT_POLYLINE_VERTEX], host, error))
+        return NULL;
+    gproji_pool_start(&numbers, &object->heap);
+    vertex = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_VERTEX]);
+    edge = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_EDGE]);
+    face = gproji_take_ints(&numbers, s->count[GPROJI_EDIT_FACE]);
+    code = numbers.failed ? gproji_fail_memory(error) : GPROJ_OK;
     /* 1. Vertices; a merged one gets the number that the lower one has already. */
     for (v = 0; !code && v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
@@ -16032,23 +16038,23 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
         if (end < begin + 2) end = begin;
         if (end > begin) draft.start[++soup->polyline_count] = end;
     }
-    if (!code) code = gproji_mesh_build(made, soup, error);
+    made = gproji_draft_end(&draft, code);
+    if (!made) {
+        gproji_pool_give_all(&numbers);
+        return NULL;
+    }
     /* 4. Edges, which the mesh has numbered: both are walked side by side. */
-    for (f = 0; !code && f < s->count[GPROJI_EDIT_FACE]; ++f) {
+    for (f = 0; f < s->count[GPROJI_EDIT_FACE]; ++f) {
         if (s->face_halfedge[f] < 0) continue;
-        h = s->face_halfedge[f], k = made->mesh.face_halfedge[face[f]];
-        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->mesh.next[k]) edge[h / 2] = k / 2;
+        h = s->face_halfedge[f], k = made->face_halfedge[face[f]];
+        for (i = 0; i < s->face_degree[f]; ++i, h = s->next[h], k = made->next[k]) edge[h / 2] = k / 2;
     }
-    for (e = 0; !code && e < s->count[GPROJI_EDIT_EDGE]; ++e)
+    for (e = 0; e < s->count[GPROJI_EDIT_EDGE]; ++e)
         if (s->edge_into[e] != e) edge[e] = s->edge_into[e] < 0 ? -1 : edge[s->edge_into[e]];
-    for (kind = 0; kind < GPROJI_EDIT_NUMBERED; ++kind) { /* new numbers replace the old ones, or are given back */
-        int32_t *other = code ? number[kind] : object->number[kind];
-        gproji_give(&object->heap, other, (size_t)(code ? s->count : object->number_count)[kind], sizeof(int32_t));
-        if (!code) object->number[kind] = number[kind], object->number_count[kind] = s->count[kind];
-    }
-    gproji_edit_publish(object);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(made, code);
+    gproji_pool_give_all(&object->numbers);
+    object->numbers = numbers;
+    edit->vertex_number = vertex, edit->edge_number = edge, edit->face_number = face;
+    return made;
 }
 
 GPROJ_API int32_t gproj_edit_vertex(gproj_edit *edit, int32_t vertex) {
@@ -16398,10 +16404,10 @@ GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *
     }
 }
 
-/* Makes the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
+/* Drafts the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
    vertex_face: the face of each vertex, or NULL. */
-GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
-                                             gproji_mesh_object *made, gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+                                             gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
     int32_t f, e, v, k, h, g, begin;
@@ -16439,13 +16445,12 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         draft->degree[soup->face_count++] = soup->corner_count - begin;
     }
     gproji_dual_polylines(mesh, dual);
-    return gproji_mesh_build(made, soup, error);
+    return GPROJ_OK;
 }
 
-/* Makes the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and each
+/* Drafts the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and each
    vertex with faces. */
-GPROJI_INTERNAL gproj_code gproji_diagonals_build(const gproj_mesh *mesh, gproji_dual *dual, gproji_mesh_object *made,
-                                                  gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_draft_diagonals(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
     int32_t e, f, v, k, h;
@@ -16471,15 +16476,14 @@ GPROJI_INTERNAL gproj_code gproji_diagonals_build(const gproj_mesh *mesh, gproji
                                "there is no mesh along the diagonals: inner vertex %d has two edges", v);
     }
     gproji_dual_polylines(mesh, dual);
-    return gproji_mesh_build(made, soup, error);
+    return GPROJ_OK;
 }
 
 /* Makes the dual or the mesh along the diagonals. */
 GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagonals, int32_t *vertex_face,
                                              const gproj_host *host, gproj_error *error) {
-    gproji_mesh_object *made;
     gproji_dual dual;
-    gproji_pool pool;
+    gproji_pool *pool = &dual.draft.pool;
     gproj_code code;
     int64_t vertices, edges, faces, corners;
     if (!gproji_given(mesh, "mesh", error) ||
@@ -16493,21 +16497,18 @@ GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagon
                     (int32_t)GPROJI_CORNERS_MAX);
         return NULL;
     }
-    made = gproji_mesh_begin(host, error);
-    if (!made) return NULL;
-    gproji_pool_start(&pool, &made->heap);
-    dual.vertex = gproji_take_ints(&pool, vertices);
-    dual.midpoint = gproji_take_ints(&pool, edges);
-    dual.seen = gproji_take_ints(&pool, faces);
-    if (!gproji_draft_take(&dual.draft, &pool, faces + edges + vertices, faces + vertices, corners,
-                           mesh->polyline_count, mesh->polyline_start[mesh->polyline_count]))
+    if (!gproji_draft_begin(&dual.draft, faces + edges + vertices, faces + vertices, corners, mesh->polyline_count,
+                            mesh->polyline_start[mesh->polyline_count], host, error))
+        return NULL;
+    dual.vertex = gproji_take_ints(pool, vertices);
+    dual.midpoint = gproji_take_ints(pool, edges);
+    dual.seen = gproji_take_ints(pool, faces);
+    if (pool->failed)
         code = gproji_fail_memory(error);
-    else if (diagonals)
-        code = gproji_diagonals_build(mesh, &dual, made, error);
     else
-        code = gproji_dual_build(mesh, &dual, vertex_face, made, error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(made, code);
+        code =
+            diagonals ? gproji_draft_diagonals(mesh, &dual, error) : gproji_draft_dual(mesh, &dual, vertex_face, error);
+    return gproji_draft_end(&dual.draft, code);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_face, const gproj_host *host,
@@ -17492,10 +17493,7 @@ GPROJI_INTERNAL bool gproji_have_same_faces(const gproj_mesh *a, const gproj_mes
 
 GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mesh *offset, const gproj_host *host,
                                          gproj_error *error) {
-    gproji_mesh_object *object;
     gproji_draft draft;
-    gproji_pool pool;
-    gproj_code code = GPROJ_OK;
     int32_t e;
     gproji_error_clear(error);
     if (!gproji_have_same_faces(mesh, offset)) {
@@ -17512,13 +17510,10 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                     mesh->edge_count);
         return NULL;
     }
-    object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
-    gproji_pool_start(&pool, &object->heap);
-    if (!gproji_draft_take(&draft, &pool, 4 * (int64_t)mesh->edge_count, mesh->edge_count,
-                           4 * (int64_t)mesh->edge_count, 0, 0))
-        code = gproji_fail_memory(error);
-    for (e = 0; !code && e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
+    if (!gproji_draft_begin(&draft, 4 * (int64_t)mesh->edge_count, mesh->edge_count, 4 * (int64_t)mesh->edge_count, 0,
+                            0, host, error))
+        return NULL;
+    for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
         double *out = draft.position + 12 * (size_t)e;
         gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
         gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
@@ -17526,11 +17521,9 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
         gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
         draft.degree[e] = 4;
     }
-    for (e = 0; !code && e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
+    for (e = 0; e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
     draft.soup.vertex_count = 4 * mesh->edge_count, draft.soup.face_count = mesh->edge_count;
-    if (!code) code = gproji_mesh_build(object, &draft.soup, error);
-    gproji_pool_give_all(&pool);
-    return gproji_mesh_done(object, code);
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, const gproj_mesh *offset) {
@@ -17628,21 +17621,18 @@ typedef struct gproji_pattern {
 
 /* A patch under construction, with local numbers for vertices and quads. */
 typedef struct gproji_patch {
-    gproji_heap *heap;
+    gproji_pool pool; /* all arrays */
     int32_t sides;
     int32_t edges[GPROJI_PATCH_SIDES]; /* edges now */
     int32_t *side[GPROJI_PATCH_SIDES]; /* vertices along each side as it is now, both ends included */
-    int32_t *block;                    /* holds all sides */
-    size_t block_size;
-    gproji_ints quad; /* 4 vertices each */
-    gproji_ints loop; /* the finished boundary from the pattern's corner 0 */
-    gproji_ints uses; /* faces at each vertex */
+    gproji_ints quad;                  /* 4 vertices each */
+    gproji_ints loop;                  /* the finished boundary from the pattern's corner 0 */
+    int32_t *uses;                     /* faces at each vertex */
     int32_t vertices;
 } gproji_patch;
 
 typedef struct gproji_filling {
-    gproji_heap *heap;
-    gproji_pool pool; /* holds `seen` and `border` */
+    gproji_pool pool; /* all arrays; a function that only adds to them leaves the look at pool.failed to the caller */
     const gproj_host *host;
     gproj_error *error;
     gproj_fill_options options;
@@ -17666,13 +17656,11 @@ typedef struct gproji_filling {
     int32_t cut_vertices;   /* then those on cuts */
 } gproji_filling;
 
-GPROJI_INTERNAL bool gproji_ints_add4(gproji_heap *heap, gproji_ints *ints, int32_t a, int32_t b, int32_t c,
-                                      int32_t d) {
-    size_t at = ints->count;
-    ints->data = (int32_t *)gproji_grow(heap, ints->data, &ints->capacity, at + 4, sizeof(int32_t));
-    if (ints->capacity < at + 4) return false;
-    ints->data[at] = a, ints->data[at + 1] = b, ints->data[at + 2] = c, ints->data[at + 3] = d, ints->count += 4;
-    return true;
+GPROJI_INTERNAL void gproji_add_quad(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c, int32_t d) {
+    gproji_ints_add(pool, quad, a);
+    gproji_ints_add(pool, quad, b);
+    gproji_ints_add(pool, quad, c);
+    gproji_ints_add(pool, quad, d);
 }
 
 /* -- patterns: their equations -- */
@@ -17839,13 +17827,6 @@ GPROJI_INTERNAL void gproji_find_patterns(gproji_candidates *c, int32_t sides, c
 
 /* -- patterns: their quads -- */
 
-GPROJI_INTERNAL void gproji_patch_give(gproji_patch *patch) {
-    gproji_give(patch->heap, patch->block, patch->block_size, sizeof(int32_t));
-    gproji_ints_give(patch->heap, &patch->quad);
-    gproji_ints_give(patch->heap, &patch->loop);
-    gproji_ints_give(patch->heap, &patch->uses);
-}
-
 GPROJI_INTERNAL bool gproji_is_flat(int32_t flat, int32_t sides, int32_t corner) { return flat >> corner % sides & 1; }
 
 /* Does a strip run from corner i over flat corners to another, *to, that is not flat? */
@@ -17868,13 +17849,12 @@ GPROJI_INTERNAL bool gproji_inner_lengths(int32_t sides, int32_t flat, const int
 }
 
 /* Adds a strip of quads along sides i to to - 1 (counted on beyond the last). */
-GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
+GPROJI_INTERNAL void gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to) {
     int32_t before = (i + patch->sides - 1) % patch->sides, after = to % patch->sides, j, side;
     int32_t outer = patch->vertices;
     for (side = i; side < to; ++side) {
         int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
-        for (j = 0; j < n; ++j)
-            if (!gproji_ints_add4(patch->heap, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j])) return false;
+        for (j = 0; j < n; ++j) gproji_add_quad(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
         outer += n;
     }
     /* One edge more on the side before and on the side after; then the new sides outside. */
@@ -17887,24 +17867,21 @@ GPROJI_INTERNAL bool gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
             if (j == patch->edges[side % patch->sides]) patch->vertices = outer + j;
         }
     ++patch->vertices;
-    return true;
 }
 
-/* Builds a patch whose sides have these lengths. False without memory; give the patch back in any case. */
+/* Builds a patch whose sides have these lengths. False without memory; give the pool back in any case. */
 GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, const gproji_pattern *p,
                                         const int32_t *length) {
-    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n = 0;
+    int32_t at[GPROJI_PATCH_SIDES + 1], all = 0, rows = p->rows, around, i, j, k, n;
+    gproji_pool *pool = &patch->pool;
     size_t q;
     /* 1. Room for sides as long as they become. */
     memset(patch, 0, sizeof *patch);
-    patch->heap = heap, patch->sides = p->sides;
-    for (i = 0; i < p->sides; ++i) patch->block_size += (size_t)length[i] + 1;
-    patch->block = (int32_t *)gproji_take(heap, patch->block_size, sizeof(int32_t));
-    if (!patch->block) return false;
-    for (i = 0; i < p->sides; ++i) {
-        patch->side[i] = patch->block + n;
-        n += length[(i + p->first) % p->sides] + 1;
-    }
+    gproji_pool_start(pool, heap);
+    patch->sides = p->sides;
+    for (i = 0; i < p->sides; ++i)
+        patch->side[i] = gproji_take_ints(pool, (int64_t)length[(i + p->first) % p->sides] + 1);
+    if (pool->failed) return false;
     /* 2. The core, numbered by rows from below, and its sides along the walk around it. */
     for (i = 0; i < p->edges; ++i) all += p->edge[i];
     around = 2 * (rows + all);
@@ -17926,29 +17903,26 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < rows; ++i)
         for (j = 0; j < all; ++j) {
             int32_t v = i * (all + 1) + j;
-            if (!gproji_ints_add4(heap, &patch->quad, v, v + 1, v + all + 2, v + all + 1)) return false;
+            gproji_add_quad(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
         }
     /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
-        for (k = 0; k < p->strip[i]; ++k)
-            if (!gproji_add_strip(patch, i, i + 1)) return false;
+        for (k = 0; k < p->strip[i]; ++k) gproji_add_strip(patch, i, i + 1);
     for (i = 0; i < p->sides; ++i)
-        if (gproji_has_long_strip(p->flat, p->sides, i, &k) && !gproji_add_strip(patch, i, k)) return false;
+        if (gproji_has_long_strip(p->flat, p->sides, i, &k)) gproji_add_strip(patch, i, k);
     /* 4. The boundary as a loop, in a ring if one is wanted. */
     for (i = 0; i < p->sides; ++i)
-        for (j = 0; j < patch->edges[i]; ++j)
-            if (!gproji_ints_add(heap, &patch->loop, patch->side[i][j])) return false;
+        for (j = 0; j < patch->edges[i]; ++j) gproji_ints_add(pool, &patch->loop, patch->side[i][j]);
     n = (int32_t)patch->loop.count;
     for (i = 0; p->ring && i < n; ++i) {
         int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        if (!gproji_ints_add4(heap, &patch->quad, v + i, v + next, loop[next], loop[i])) return false;
+        gproji_add_quad(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
     }
     for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
     /* 5. Faces at each vertex. */
-    for (i = 0; i < patch->vertices; ++i)
-        if (!gproji_ints_add(heap, &patch->uses, 0)) return false;
-    for (q = 0; q < patch->quad.count; ++q) ++patch->uses.data[patch->quad.data[q]];
-    return true;
+    patch->uses = (int32_t *)gproji_pool_take_zeroed(pool, patch->vertices, sizeof *patch->uses);
+    for (q = 0; !pool->failed && q < patch->quad.count; ++q) ++patch->uses[patch->quad.data[q]];
+    return !pool->failed;
 }
 
 /* -- the plane -- */
@@ -18071,7 +18045,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
         gproji_sub3(f->points + 3 * (size_t)i, f->points, a);
         f->seen[2 * i] = gproji_dot3(a, f->across), f->seen[2 * i + 1] = gproji_dot3(a, f->up);
     }
-    if (!gproji_find_crossing(f->heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
+    if (!gproji_find_crossing(f->pool.heap, f->seen, f->count, &i, &j)) return gproji_fail_memory(f->error);
     if (i < f->count)
         return gproji_fail(f->error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_VERTEX, i,
                            "the curve meets itself, as seen along its normal, after point %d and after point %d; only "
@@ -18101,7 +18075,6 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
     const gproj_fill_options *o = &f->options;
     const double *p = f->points;
     int32_t i, n;
-    bool taken = true;
     if (o->corner_count < 0 || o->corner_count == 1 || (o->corner_count > 0 && !o->corners))
         return gproji_refuse(f->error, "%d corners%s; give at least 2, or none to have them found", o->corner_count,
                              o->corner_count > 1 ? " in an array that is NULL" : "");
@@ -18114,31 +18087,32 @@ GPROJI_INTERNAL gproj_code gproji_find_corners(gproji_filling *f) {
             return gproji_fail(f->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, c,
                                "corner %d is point %d, after point %d; list corners in ascending order, each once", i,
                                c, before);
-        taken = taken && gproji_ints_add(f->heap, &f->corner, c);
+        gproji_ints_add(&f->pool, &f->corner, c);
     }
-    for (i = 0; i < f->count && o->corner_count == 0 && taken; ++i) { /* as gproj_form_is_corner does with vertices */
+    for (i = 0; i < f->count && o->corner_count == 0; ++i) { /* as gproj_form_is_corner does with vertices */
         int32_t before = (i + f->count - 1) % f->count, after = (i + 1) % f->count;
         if (gproji_turns(p + 3 * (size_t)before, p + 3 * (size_t)i, p + 3 * (size_t)after))
-            taken = gproji_ints_add(f->heap, &f->corner, i);
+            gproji_ints_add(&f->pool, &f->corner, i);
     }
-    if (taken && f->corner.count < 2) { /* from the only corner, or the first point */
+    if (f->corner.count < 2) { /* from the only corner, or the first point */
         int32_t from = f->corner.count ? f->corner.data[0] : 0;
         double all = gproji_length_between(f, from, from + f->count), at = 0;
         f->corner.count = 0;
-        taken = gproji_ints_add(f->heap, &f->corner, from);
-        for (n = 1, i = from; taken && i + 1 < from + f->count && n < 4; ++i) {
+        gproji_ints_add(&f->pool, &f->corner, from);
+        for (n = 1, i = from; i + 1 < from + f->count && n < 4; ++i) {
             double step = gproji_length_between(f, i, i + 1);
             at += step;
             if (at + step / 2 < all * n / 4 && from + f->count - 2 - i >= 4 - n) continue;
-            taken = gproji_ints_add(f->heap, &f->corner, (i + 1) % f->count);
+            gproji_ints_add(&f->pool, &f->corner, (i + 1) % f->count);
             ++n;
         }
     }
+    if (f->pool.failed) return gproji_fail_memory(f->error);
     f->sides = (int32_t)f->corner.count;
-    if (taken && o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
+    if (o->side_count != 0 && (o->side_count != f->sides || !o->subdivisions))
         return gproji_refuse(f->error, "numbers of edges are given for %d sides%s, but the curve has %d", o->side_count,
                              o->subdivisions ? "" : " by a NULL array", f->sides);
-    return taken ? GPROJ_OK : gproji_fail_memory(f->error);
+    return GPROJ_OK;
 }
 
 /* The points along a side, from the first to the last, counted on beyond the array's end. */
@@ -18207,13 +18181,13 @@ GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     int32_t side, from, to, *edges, sum = 0, change = 0;
     f->edge_length = f->options.edge_length;
     if (f->edge_length == 0) f->edge_length = gproji_length_between(f, 0, f->count) / f->count;
-    if (!gproji_ints_add(f->heap, &f->start, 0)) return gproji_fail_memory(f->error);
+    gproji_ints_add(&f->pool, &f->start, 0);
     for (side = 0; side < f->sides; ++side) {
         int32_t n = f->options.side_count ? f->options.subdivisions[side] : 0;
         gproji_side_points(f, side, &from, &to);
-        if (!gproji_ints_add(f->heap, &f->start, f->options.keep_points ? to - from : n))
-            return gproji_fail_memory(f->error);
+        gproji_ints_add(&f->pool, &f->start, f->options.keep_points ? to - from : n);
     }
+    if (f->pool.failed) return gproji_fail_memory(f->error);
     edges = f->start.data + 1;
     if (!f->options.keep_points && !f->options.side_count) gproji_choose_edges(f, edges);
     for (side = 0; side < f->sides; ++side) {
@@ -18241,13 +18215,12 @@ GPROJI_INTERNAL gproj_code gproji_count_side_edges(gproji_filling *f) {
     return GPROJ_OK;
 }
 
-GPROJI_INTERNAL bool gproji_add_flat(gproji_filling *f, double x, double y) {
-    size_t needed = (size_t)f->vertices + 1;
-    f->flat = (double *)gproji_grow(f->heap, f->flat, &f->flat_capacity, needed, 2 * sizeof(double));
-    if (f->flat_capacity < needed) return false;
-    f->flat[2 * (size_t)f->vertices] = x, f->flat[2 * (size_t)f->vertices + 1] = y;
+GPROJI_INTERNAL void gproji_add_flat(gproji_filling *f, double x, double y) {
+    size_t v = (size_t)f->vertices;
+    f->flat = (double *)gproji_pool_grow(&f->pool, f->flat, &f->flat_capacity, v + 1, 2 * sizeof(double));
+    if (f->pool.failed) return;
+    f->flat[2 * v] = x, f->flat[2 * v + 1] = y;
     ++f->vertices;
-    return true;
 }
 
 /* Places the boundary's vertices and makes the first outline, which follows it all. */
@@ -18282,13 +18255,13 @@ GPROJI_INTERNAL gproj_code gproji_divide_curve(gproji_filling *f) {
         bool corner = i == f->start.data[side];
         side += corner;
         gproji_sub3(f->border + 3 * (size_t)i, f->points, d);
-        if (!gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up)) ||
-            !gproji_ints_add(f->heap, &f->polygon, 2 * i + corner))
-            return gproji_fail_memory(f->error);
+        gproji_add_flat(f, gproji_dot3(d, f->across), gproji_dot3(d, f->up));
+        gproji_ints_add(&f->pool, &f->polygon, 2 * i + corner);
     }
-    if (!gproji_ints_add(f->heap, &f->patch, f->boundary)) return gproji_fail_memory(f->error);
+    gproji_ints_add(&f->pool, &f->patch, f->boundary);
     /* A simple curve may have chords that cross. */
-    if (!gproji_find_crossing(f->heap, f->flat, f->boundary, &i, &j)) return gproji_fail_memory(f->error);
+    if (f->pool.failed || !gproji_find_crossing(f->pool.heap, f->flat, f->boundary, &i, &j))
+        return gproji_fail_memory(f->error);
     if (i == f->boundary) return GPROJ_OK;
     for (from = 0; f->start.data[from + 1] <= i;) ++from;
     for (to = 0; f->start.data[to + 1] <= j;) ++to;
@@ -18451,54 +18424,49 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
 }
 
 /* Appends the outline on one side of a cut: places i to j, then the cut's inner vertices, forward or backward. */
-GPROJI_INTERNAL bool gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
+GPROJI_INTERNAL void gproji_add_part(gproji_filling *f, int32_t start, int32_t count, int32_t i, int32_t j,
                                      int32_t first, int32_t inner, bool forward) {
     int32_t k, from = (int32_t)f->polygon.count, to, end;
     gproji_outline o;
-    for (k = i; k <= j; ++k)
-        if (!gproji_ints_add(f->heap, &f->polygon, f->polygon.data[start + k % count])) return false;
+    for (k = i; k <= j; ++k) gproji_ints_add(&f->pool, &f->polygon, f->polygon.data[start + k % count]);
     to = (int32_t)f->polygon.count - 1;
-    for (k = 0; k < inner; ++k)
-        if (!gproji_ints_add(f->heap, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)))) return false;
-    if (!gproji_ints_add(f->heap, &f->patch, (int32_t)f->polygon.count)) return false;
+    for (k = 0; k < inner; ++k) gproji_ints_add(&f->pool, &f->polygon, 2 * (first + (forward ? k : inner - 1 - k)));
+    gproji_ints_add(&f->pool, &f->patch, (int32_t)f->polygon.count);
+    if (f->pool.failed) return;
     o = gproji_outline_of(f, from, (int32_t)f->polygon.count);
     for (end = 0; end < 2; ++end) { /* the cut's ends are corners by their new angles */
         int32_t at = end ? to - from : 0;
         o.entry[at] = (o.entry[at] & ~1) | (gproji_outline_angle(&o, at) < GPROJI_OBTUSE);
     }
-    return true;
 }
 
-/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. False without memory. */
-GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
+/* Cuts outlines until none is left to cut; parts are appended, and looked at in turn. */
+GPROJI_INTERNAL void gproji_cut_outlines(gproji_filling *f) {
     size_t at;
     int32_t start, k;
-    for (at = 0, start = 0; at < f->patch.count; start = abs(f->patch.data[at++])) {
+    for (at = 0, start = 0; at < f->patch.count && !f->pool.failed; start = abs(f->patch.data[at++])) {
         gproji_outline o = gproji_outline_of(f, start, f->patch.data[at]);
         gproji_cut_line cut = {0, 0, 0, HUGE_VAL};
         gproji_pool pool;
         int32_t a, b, first = f->vertices;
-        bool measured;
-        gproji_pool_start(&pool, f->heap);
-        measured = gproji_measure_outline(&o, &pool);
-        if (measured) cut = gproji_find_cut(&o);
+        gproji_pool_start(&pool, f->pool.heap);
+        if (gproji_measure_outline(&o, &pool))
+            cut = gproji_find_cut(&o);
+        else
+            f->pool.failed = true;
         gproji_pool_give_all(&pool);
-        if (!measured) return false;
         if (!(cut.cost < HUGE_VAL)) continue;
         a = gproji_outline_vertex(&o, cut.i), b = gproji_outline_vertex(&o, cut.j);
         for (k = 1; k < cut.edges; ++k) { /* from j to i */
             double t = (double)k / cut.edges;
-            if (!gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
-                                 (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]))
-                return false;
+            gproji_add_flat(f, (1 - t) * f->flat[2 * b] + t * f->flat[2 * a],
+                            (1 - t) * f->flat[2 * b + 1] + t * f->flat[2 * a + 1]);
         }
-        if (!gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true) ||
-            !gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false))
-            return false;
+        gproji_add_part(f, start, o.count, cut.i, cut.j, first, cut.edges - 1, true);
+        gproji_add_part(f, start, o.count, cut.j, cut.i + o.count, first, cut.edges - 1, false);
         f->patch.data[at] = -f->patch.data[at];
     }
     f->cut_vertices = f->vertices;
-    return true;
 }
 
 /* -- patches -- */
@@ -18506,7 +18474,7 @@ GPROJI_INTERNAL bool gproji_cut_outlines(gproji_filling *f) {
 /* Is it a disk whose inner vertices have valence 3 to 5, with 1 or 2 faces at corners and 2 at other boundary vertices,
    or 3 on the curve or a ring along it? `at`: the outline place at the pattern's first corner. Destroys `uses`. */
 GPROJI_INTERNAL bool gproji_patch_is_good(gproji_patch *patch, const gproji_outline *o, int32_t at) {
-    int32_t i, side, from = at, *uses = patch->uses.data;
+    int32_t i, side, from = at, *uses = patch->uses;
     for (side = 0; side < patch->sides; ++side)
         for (i = 0; i < patch->edges[side]; ++i, ++at) {
             int32_t v = patch->loop.data[at - from], most = gproji_outline_vertex(o, at) < o->f->curve_vertices ? 3 : 2;
@@ -18534,9 +18502,9 @@ GPROJI_INTERNAL bool gproji_choose_pattern(gproji_filling *f, const gproji_outli
             p->ring = ring != 0;
             for (k = 0; k < sides && !ring; ++k)
                 if (gproji_is_flat(flat, sides, k + p->first)) p->flat |= 1 << k;
-            done = gproji_build_patch(&patch, f->heap, p, length);
+            done = gproji_build_patch(&patch, f->pool.heap, p, length);
             if (done && gproji_patch_is_good(&patch, o, place[p->first])) *chosen = *p, ++good;
-            gproji_patch_give(&patch);
+            gproji_pool_give_all(&patch.pool);
             if (!done) return false;
         }
     }
@@ -18577,9 +18545,9 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; i < sides; ++i) length[i] = (i + 1 < sides ? place[i + 1] : place[0] + o->count) - place[i];
     /* 2. The pattern. */
     if (!gproji_choose_pattern(f, o, sides, place, length, flat, &p)) return false;
-    done = gproji_build_patch(&patch, f->heap, &p, length);
+    done = gproji_build_patch(&patch, f->pool.heap, &p, length);
     /* 3. Global numbers: from the outline along the boundary, new ones inside, at the boundary's mean as yet. */
-    number = patch.uses.data, n = (int32_t)patch.loop.count;
+    number = patch.uses, n = (int32_t)patch.loop.count;
     for (i = 0; done && i < patch.vertices; ++i) number[i] = -1;
     for (i = 0; done && i < n; ++i) {
         int32_t v = gproji_outline_vertex(o, place[p.first] + i);
@@ -18589,12 +18557,11 @@ GPROJI_INTERNAL bool gproji_fill_patch(gproji_filling *f, gproji_outline *o) {
     for (i = 0; done && i < patch.vertices; ++i) {
         if (number[i] >= 0) continue;
         number[i] = f->vertices;
-        done = gproji_add_flat(f, x, y);
+        gproji_add_flat(f, x, y);
     }
-    for (q = 0; done && q < patch.quad.count; ++q)
-        done = gproji_ints_add(f->heap, &f->quad, number[patch.quad.data[q]]);
-    gproji_patch_give(&patch);
-    return done;
+    for (q = 0; done && q < patch.quad.count; ++q) gproji_ints_add(&f->pool, &f->quad, number[patch.quad.data[q]]);
+    gproji_pool_give_all(&patch.pool);
+    return done && !f->pool.failed;
 }
 
 /* -- positions -- */
@@ -18615,7 +18582,7 @@ typedef struct gproji_pairs {
 /* Takes the arrays for `count` pairs of unknowns. False: no memory; gproji_pairs_give is due either way. */
 GPROJI_INTERNAL bool gproji_pairs_take(gproji_pairs *m, gproji_filling *f, int32_t unknowns, int64_t count) {
     memset(m, 0, sizeof *m);
-    gproji_pool_start(&m->pool, f->heap);
+    gproji_pool_start(&m->pool, f->pool.heap);
     m->unknowns = unknowns, m->count = count;
     m->pair = gproji_take_ints(&m->pool, 2 * count);
     m->start = (int64_t *)gproji_pool_take_zeroed(&m->pool, (int64_t)unknowns + 2, sizeof *m->start);
@@ -18752,7 +18719,7 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
 }
 
 /* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
-GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
+GPROJI_INTERNAL void gproji_add_distortion(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
     for (corner = 0; corner < 4;
@@ -18790,7 +18757,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
-    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
+    for (q = 0; q < quads; ++q) gproji_add_distortion(u, q);
     outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
     u->failed = outcome == GPROJ_FACTOR_FAILED;
     if (outcome != GPROJ_FACTORED) return false;
@@ -18857,28 +18824,27 @@ GPROJI_INTERNAL gproj_code gproji_place_vertices(gproji_filling *f) {
 /* -- the mesh -- */
 
 /* Makes the mesh: positions in space, faces, and the sides as polylines. */
-GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_object *object) {
+GPROJI_INTERNAL gproj_mesh *gproji_build_filling(gproji_filling *f) {
     int32_t faces = (int32_t)f->quad.count / 4, side, i, v, end = 0;
     gproji_draft draft;
-    gproji_pool pool;
     double *height;
-    gproj_code code = GPROJ_OK;
-    gproji_pool_start(&pool, f->heap);
-    height = (double *)gproji_pool_take(&pool, f->vertices, sizeof *height);
-    if (!gproji_draft_take(&draft, &pool, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides))
-        code = gproji_fail_memory(f->error);
-    for (side = 0; !code && side < f->sides; ++side) {
+    gproj_code code;
+    if (!gproji_draft_begin(&draft, f->vertices, faces, 4 * (int64_t)faces, f->sides, f->boundary + f->sides, f->host,
+                            f->error))
+        return NULL;
+    for (side = 0; side < f->sides; ++side) {
         for (i = f->start.data[side]; i <= f->start.data[side + 1]; ++i) draft.vertex[end++] = i % f->boundary;
         draft.start[side + 1] = end;
     }
     /* Heights over the plane: the curve's, harmonic inside. */
-    for (v = 0; !code && v < f->boundary; ++v) {
+    height = (double *)gproji_pool_take(&draft.pool, f->vertices, sizeof *height);
+    for (v = 0; height && v < f->boundary; ++v) {
         double d[3];
         gproji_sub3(f->border + 3 * (size_t)v, f->points, d);
         height[v] = gproji_dot3(d, f->normal);
     }
-    if (!code) code = gproji_fill_harmonically(f, f->boundary, 1, height);
-    if (!code) memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
+    code = height ? gproji_fill_harmonically(f, f->boundary, 1, height) : gproji_fail_memory(f->error);
+    memcpy(draft.position, f->border, 3 * (size_t)f->boundary * sizeof(double));
     for (v = f->boundary; !code && v < f->vertices; ++v) {
         double *out = draft.position + 3 * (size_t)v;
         gproji_copy3(f->points, out);
@@ -18886,18 +18852,14 @@ GPROJI_INTERNAL gproj_code gproji_build_filling(gproji_filling *f, gproji_mesh_o
         gproji_add_scaled3(f->flat[2 * (size_t)v + 1], f->up, out);
         gproji_add_scaled3(height[v], f->normal, out);
     }
-    if (!code) {
-        gproji_fill(draft.degree, faces, 4);
-        memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
-        draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
-        code = gproji_mesh_build(object, &draft.soup, f->error);
-    }
-    gproji_pool_give_all(&pool);
-    return code;
+    gproji_fill(draft.degree, faces, 4);
+    memcpy(draft.corner, f->quad.data, f->quad.count * sizeof(int32_t));
+    draft.soup.vertex_count = f->vertices, draft.soup.face_count = faces, draft.soup.polyline_count = f->sides;
+    return gproji_draft_end(&draft, code);
 }
 
-/* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. False without memory. */
-GPROJI_INTERNAL bool gproji_lay_rings(gproji_filling *f) {
+/* Lays rings of quads inside the curve, near it as yet; the outline is the innermost one's. */
+GPROJI_INTERNAL void gproji_lay_rings(gproji_filling *f) {
     int32_t n = f->boundary, ring, i;
     for (ring = 1; ring <= f->options.rings; ++ring)
         for (i = 0; i < n; ++i) {
@@ -18905,13 +18867,11 @@ GPROJI_INTERNAL bool gproji_lay_rings(gproji_filling *f) {
             double x = f->flat[2 * next] - f->flat[2 * before], y = f->flat[2 * next + 1] - f->flat[2 * before + 1];
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
             depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
-            if (!gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x) ||
-                !gproji_ints_add4(f->heap, &f->quad, outer + i, outer + next, inner + next, inner + i))
-                return false;
+            gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x);
+            gproji_add_quad(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
         }
     f->curve_vertices = f->vertices;
     for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
-    return true;
 }
 
 /* Fills all outlines in one variant. Sets whether it is good: inner valences up to `valence`, no quad turned over. */
@@ -18927,11 +18887,11 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
         if (o.count > 0 && !gproji_fill_patch(f, &o)) return gproji_fail_memory(f->error);
     }
     /* 2. Valences inside, before the work on positions. */
-    count = (int32_t *)gproji_take_zeroed(f->heap, (size_t)f->vertices, sizeof *count);
+    count = (int32_t *)gproji_take_zeroed(f->pool.heap, (size_t)f->vertices, sizeof *count);
     if (!count) return gproji_fail_memory(f->error);
     for (at = 0; at < f->quad.count; ++at)
         if (f->quad.data[at] >= f->boundary) most = gproji_max(most, ++count[f->quad.data[at]]);
-    gproji_give(f->heap, count, (size_t)f->vertices, sizeof *count);
+    gproji_give(f->pool.heap, count, (size_t)f->vertices, sizeof *count);
     if (most > valence) return GPROJ_OK;
     /* 3. Positions: good if all corners turn left. */
     code = gproji_place_vertices(f);
@@ -18947,8 +18907,9 @@ GPROJI_INTERNAL gproj_code gproji_try_filling(gproji_filling *f, int32_t valence
 GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const gproj_fill_options *options,
                                       gproj_fill_info *info, const gproj_host *host, gproj_error *error) {
     static const int32_t most[3] = {5, 6, INT32_MAX};
-    gproji_mesh_object *object;
+    gproji_heap heap = gproji_heap_of(host);
     gproji_filling f;
+    gproj_mesh *mesh;
     gproj_fill_info found;
     gproj_code code;
     int32_t variant, tries, i;
@@ -18958,21 +18919,22 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
     gproji_error_clear(error);
     memset(&found, 0, sizeof found);
     if (info) *info = found;
-    object = gproji_mesh_begin(host, error);
-    if (!object) return NULL;
     memset(&f, 0, sizeof f);
-    f.heap = &object->heap, f.host = host, f.error = error;
+    f.host = host, f.error = error;
     f.count = count, f.points = points;
     if (options) f.options = *options;
-    gproji_pool_start(&f.pool, f.heap);
+    gproji_pool_start(&f.pool, &heap);
     code = gproji_check_curve(&f);
     if (!code) code = gproji_find_corners(&f);
     if (!code) code = gproji_count_side_edges(&f);
     if (!code) code = gproji_divide_curve(&f);
     /* 1. All cuts before the first patch: vertices on cuts are numbered before those inside. */
-    if (!code && !(gproji_lay_rings(&f) && gproji_cut_outlines(&f))) code = gproji_fail_memory(error);
-    if (!code) laid = (double *)gproji_pool_take(&f.pool, 2 * (int64_t)f.cut_vertices, sizeof *laid);
-    if (!code && !laid) code = gproji_fail_memory(error);
+    if (!code) {
+        gproji_lay_rings(&f);
+        gproji_cut_outlines(&f);
+        laid = (double *)gproji_pool_take(&f.pool, 2 * (int64_t)f.cut_vertices, sizeof *laid);
+    }
+    if (!code && f.pool.failed) code = gproji_fail_memory(error);
     if (!code) memcpy(laid, f.flat, 2 * (size_t)f.cut_vertices * sizeof *laid);
     /* 2. Variants from the wanted one on, each with valences up to 5, then with 6, then with any. */
     variant = f.options.variant;
@@ -18986,17 +18948,17 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
         code = gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                            "no filling without a quad turned over was found; divide the sides finer or mark other "
                            "corners");
-    if (!code) code = gproji_build_filling(&f, object);
+    mesh = code ? NULL : gproji_build_filling(&f);
     /* 3. Properties. */
-    if (!code) found.boundary_count = f.boundary, found.side_count = f.sides;
-    for (at = 0; !code && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
-    for (i = f.boundary; !code && i < f.vertices; ++i) {
-        int32_t valence = gproj_mesh_valence(&object->mesh, i);
+    if (mesh) found.boundary_count = f.boundary, found.side_count = f.sides;
+    for (at = 0; mesh && at < f.patch.count; ++at) found.patch_count += f.patch.data[at] > 0;
+    for (i = f.boundary; mesh && i < f.vertices; ++i) {
+        int32_t valence = gproj_mesh_valence(mesh, i);
         found.irregular_count += valence != 4;
         found.min_valence = i == f.boundary ? valence : gproji_min(found.min_valence, valence);
         found.max_valence = gproji_max(found.max_valence, valence);
     }
-    for (i = 0; !code && i < (int32_t)f.quad.count; ++i) {
+    for (i = 0; mesh && i < (int32_t)f.quad.count; ++i) {
         double angle = gproji_inner_angle(f.flat, f.quad.data[i], f.quad.data[gproji_quad_next(i)],
                                           f.quad.data[gproji_quad_previous(i)]) *
                        (180 / GPROJI_PI);
@@ -19004,14 +18966,8 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
         if (i == 0 || angle > found.max_angle) found.max_angle = angle;
     }
     gproji_pool_give_all(&f.pool);
-    gproji_give(f.heap, f.flat, f.flat_capacity, 2 * sizeof(double));
-    gproji_ints_give(f.heap, &f.corner);
-    gproji_ints_give(f.heap, &f.start);
-    gproji_ints_give(f.heap, &f.polygon);
-    gproji_ints_give(f.heap, &f.patch);
-    gproji_ints_give(f.heap, &f.quad);
     if (info) *info = found;
-    return gproji_mesh_done(object, code);
+    return mesh;
 }
 
 /* ============================================================================================================
