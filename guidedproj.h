@@ -11596,17 +11596,26 @@ static const double gproji_conflict_least = 1e-3; /* residual that is no slow en
 
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
-/* Writes why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
-GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
+/* Appends a clause to the verdict, in the format of gproji_format. */
+GPROJI_INTERNAL void gproji_tell(gproj_result *result, const char *format, ...) {
+    size_t length = strlen(result->message);
+    va_list list;
+    va_start(list, format);
+    gproji_format_list(result->message + length, sizeof result->message - length, format, list);
+    va_end(list);
+}
+
+/* Tells why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
+GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g) {
+    gproj_result *result = &loop->result;
     gproj_system *s = loop->system;
-    bool stalled = loop->result.outcome == GPROJ_STALLED;
+    bool stalled = result->outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_usual;
     double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
     int32_t second = -1, wish = -1, i, k;
     bool guided, tired, balanced;
-    more[0] = 0;
     loop->hopeful = false;
-    if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
+    if (gproji_holds(loop) || (!stalled && result->outcome != GPROJ_ITERATION_LIMIT)) return;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *other = &s->group[i];
         bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !(other->schedule.decay < 1);
@@ -11617,34 +11626,30 @@ GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g, cha
         /* 2. The other group that must hold with the largest residual. */
         if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
-    guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
+    guided = wish >= 0 && !loop->options.nearest && result->iterations > 0;
     /* A limit met is no conflict, unless much is left long after the wishes and nothing changes any more. */
     tired = !stalled && !loop->options.nearest && s->progress.unguided >= GPROJI_BALANCE_ITERATIONS &&
             loop->standing.residual > gproji_conflict_least;
     balanced = (guided || tired) && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
-        gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
+        gproji_tell(result, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
-        gproji_format(more, size,
-                      "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
+        gproji_tell(result, "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
     else if (weight < epsilon)
-        gproji_format(more, size,
-                      "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1", weight,
-                      g->name, epsilon);
+        gproji_tell(result, "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1",
+                    weight, g->name, epsilon);
     else if (guided && !balanced)
-        gproji_format(more, size,
-                      "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
-                      s->group[wish].name);
+        gproji_tell(result, "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
+                    s->group[wish].name);
     else if (!stalled && !balanced)
         loop->hopeful = true;
     else if (loop->options.tolerance <= 0 && loop->standing.residual <= gproji_almost)
-        gproji_format(more, size, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
-                      pow(10.0, ceil(log10(loop->standing.residual))));
+        gproji_tell(result, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
+                    pow(10.0, ceil(log10(loop->standing.residual))));
     else if (second >= 0)
-        gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+        gproji_tell(result, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
     else
-        gproji_format(more, size, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less",
-                      g->name);
+        gproji_tell(result, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less", g->name);
 }
 
 /* Writes the verdict in a sentence: outcome, worst row, obstacle, advice; or how near the nearest is. */
@@ -11654,36 +11659,33 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     const gproji_group *g = standing->group >= 0 ? &loop->system->group[standing->group] : NULL;
     int32_t iterations = loop->earlier + r->iterations;
     const char *plural = iterations == 1 ? "" : "s", *ending = "";
-    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE], figure[64];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
     r->worst_element = g ? g->row[standing->row].element : -1;
-    gproji_format(figure, sizeof figure, "projected gradient of the wishes %g", r->optimality);
     if (g && loop->options.nearest && gproji_holds(loop)) {
         if (r->outcome == GPROJ_CONVERGED) ending = ", at a minimum of the wishes";
         if (r->outcome == GPROJ_ITERATION_LIMIT) ending = ", but more iterations would serve the wishes better";
         if (r->outcome == GPROJ_STALLED) ending = ", and no step serves the wishes better";
         if (r->outcome == GPROJ_CANCELLED) ending = ", cancelled by the caller";
         if (r->outcome == GPROJ_TIME_OUT) ending = ", but the time budget ran out before a minimum of the wishes";
-        gproji_format(r->message, sizeof r->message, "%s%s: %d iteration%s, largest residual %g (%s), %s",
-                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name, figure);
+        gproji_format(r->message, sizeof r->message,
+                      "%s%s: %d iteration%s, largest residual %g (%s), projected gradient of the wishes %g",
+                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name,
+                      r->optimality);
         return;
     }
     if (g) {
-        gproji_advise(loop, g, more, sizeof more);
-        element[0] = 0;
-        if (g->place != GPROJ_PLACE_NONE)
-            gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
-        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
-                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s",
+                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name);
+        if (g->place != GPROJ_PLACE_NONE) gproji_tell(r, ", %s %d", gproji_place_word(g->place), r->worst_element);
+        gproji_tell(r, ")");
+        gproji_advise(loop, g);
     } else {
         gproji_format(r->message, sizeof r->message,
                       "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
     }
-    if (!loop->options.nearest) return;
-    gproji_append(r->message, sizeof r->message, strlen(r->message), "; ", 2);
-    gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
+    if (loop->options.nearest) gproji_tell(r, "; projected gradient of the wishes %g", r->optimality);
 }
 
 /* A result that carries an error's sentence. */
@@ -12267,46 +12269,31 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     gproji_loop loop;
     if (!gproji_begin_loop(&loop, s, 1, false, iterations, options)) return loop.result;
     gproji_run(&loop, -1);
-    if (loop.hopeful)
-        gproji_append(loop.result.message, GPROJ_MESSAGE_SIZE, strlen(loop.result.message), gproji_more_iterations,
-                      sizeof gproji_more_iterations - 1);
+    if (loop.hopeful) gproji_tell(&loop.result, gproji_more_iterations);
     s->changed = true; /* for the solve of a form that goes on after this one, which may have taken its multipliers */
     return loop.result;
 }
 
 /* -- gradients, checked by differences -- */
 
-/* The v-th of the variables that a row names, two a term; -1 for the second one of a linear term. */
-GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
-    return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
-}
-
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
    `gradient`: work, one number a variable, zeros on entry and on exit. */
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
-    int64_t first = 2 * (int64_t)g->row[r].term, end = first + 2 * (int64_t)g->row[r].terms, k;
+    const int32_t *variable = g->local.variable + g->row[r].local, *end = g->local.variable + g->row[r + 1].local, *v;
     double size = 1, worst = 0;
     gproji_row_gradient(g, r, s->x, gradient);
-    for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, r, k);
-        if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
-    }
-    for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, r, k);
-        double x, h, up, down, difference;
-        if (v < 0) continue;
-        x = s->x[v];
-        h = 1e-5 * gproji_fmax(1, fabs(x));
-        s->x[v] = x + h;
+    for (v = variable; v < end; ++v) size = gproji_fmax(size, fabs(gradient[*v]));
+    for (v = variable; v < end; ++v) {
+        double x = s->x[*v], h = 1e-5 * gproji_fmax(1, fabs(x)), up, down, difference;
+        s->x[*v] = x + h;
         up = gproji_row_value(g, r, s->x);
-        s->x[v] = x - h;
+        s->x[*v] = x - h;
         down = gproji_row_value(g, r, s->x);
-        s->x[v] = x;
-        difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
+        s->x[*v] = x;
+        difference = fabs((up - down) / (2 * h) - gradient[*v]) / size;
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
-    for (k = first; k < end; ++k)
-        if (gproji_named_variable(g, r, k) >= 0) gradient[gproji_named_variable(g, r, k)] = 0;
+    for (v = variable; v < end; ++v) gradient[*v] = 0;
     return worst;
 }
 
@@ -21388,12 +21375,11 @@ GPROJI_INLINE bool gproji_areas_weigh(const gproj_loads *loads) { return loads->
    snow (0, 0, 1) with the sign that a_z has. Returns it. */
 GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
                                         double h[3]) {
-    static const double up[3] = {0, 0, 1};
     double area[3], direction[3];
     int32_t k;
     gproji_area_vector(mesh, x, face, area);
     gproji_copy3(area, direction);
-    gproji_normalise3(direction, up);
+    gproji_normalise3(direction, gproji_up);
     for (k = 0; k < 3; ++k) h[k] = loads->area_load * direction[k];
     h[2] += area[2] < 0 ? -loads->snow : loads->snow;
     return gproji_dot3(h, area);
@@ -21443,7 +21429,6 @@ GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *te
    that without weight. */
 GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                                int32_t vertex, double constant) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     const int32_t *list = s->load_vertex + s->load_start[vertex];
@@ -21459,7 +21444,7 @@ GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const dou
         /* An edge puts w'(a - b) / 2 on each end, w along it: linear, without a constant. */
         if (half != 0) {
             gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
-            gproji_normalise3(d, none);
+            gproji_normalise3(d, gproji_zero);
             gproji_add_weight_terms(list, term, vertex, -half, d);
             gproji_add_weight_terms(list, term, other, half, d);
         }
@@ -21788,13 +21773,12 @@ GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge
 }
 
 GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t edge, double s, gproj_term *term) {
-    static const double none[3] = {0, 0, 0};
     const double *x = gproj_system_values(form->system);
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
     double u[3];
     int32_t k;
     gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], u);
-    gproji_normalise3(u, none);
+    gproji_normalise3(u, gproji_zero);
     for (k = 0; k < 3; ++k) term[k].a = s * u[k], term[3 + k].a = -s * u[k];
 }
 
@@ -21958,7 +21942,7 @@ GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, g
     p->lower = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->lower);
     p->upper = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->upper);
     p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
-    if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
+    if (!p->pool.failed) return true;
     gproji_pool_give_all(&p->pool);
     gproji_fail_memory(error);
     return false;
@@ -22445,10 +22429,9 @@ GPROJI_INTERNAL double *gproji_guarded_areas(const gproji_part *part) { return (
 
 /* The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     int32_t normal = part->form->normal[part->element[index]];
     gproji_copy3(normal >= 0 ? x + normal : gproji_guarded_areas(part) + 3 * (size_t)index, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Linearises the rows with the normals at x. Faces that had no area are let go. */
@@ -22637,12 +22620,11 @@ GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x,
 /* The unit normal of a face from its variables at x; for a face without them, from its vectorial area at `frozen`. */
 GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *x, const double *frozen, int32_t face,
                                           double out[3]) {
-    static const double none[3] = {0, 0, 0};
     if (form->normal[face] >= 0)
         gproji_copy3(x + form->normal[face], out);
     else
         gproji_area_vector(form->mesh, frozen, face, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as
@@ -22982,9 +22964,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     bool up = gproji_rule_is_on(form, &gproji_compression_rule), down = gproji_rule_is_on(form, &gproji_tension_rule);
     const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
-    size_t length = strlen(result->message);
     double phi[3] = {0, 0, 0};
-    char others[48], most[64];
     int32_t vertex[3] = {-1, -1, -1}, r, k;
     const gproji_group *g;
     gproj_forces forces;
@@ -23002,27 +22982,23 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
         for (; k > 0 && size > phi[k - 1]; --k) phi[k] = phi[k - 1], vertex[k] = vertex[k - 1];
         phi[k] = size, vertex[k] = v;
     }
-    gproji_format(others, sizeof others, "vertex ");
-    if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
-    most[0] = 0;
-    if (forces.residual_vertex >= 0)
-        gproji_format(most, sizeof most, " by up to %g of the largest load", forces.residual);
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; no %sequilibrium%s was found near this shape: %s%d out of balance%s", kind, planar, others,
-                  vertex[0], most);
+    gproji_tell(result, "; no %sequilibrium%s was found near this shape: ", kind, planar);
+    if (vertex[2] >= 0)
+        gproji_tell(result, "vertices %d, %d, %d out of balance", vertex[2], vertex[1], vertex[0]);
+    else
+        gproji_tell(result, "vertex %d out of balance", vertex[0]);
+    if (forces.residual_vertex >= 0) gproji_tell(result, " by up to %g of the largest load", forces.residual);
     return true;
 }
 
 /* Says that a hanging shape was asked to stand, or the opposite, and has been turned over for that. */
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
-    size_t length = strlen(result->message);
     bool stands = gproji_rule_is_on(form, &gproji_compression_rule);
     if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
-                  stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
-                  stands ? "compression" : "tension", s->lost[0]);
+    gproji_tell(result, "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
+                stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
+                stands ? "compression" : "tension", s->lost[0]);
 }
 
 /* -- demands that can never hold -- */
@@ -23070,16 +23046,15 @@ enum {
 /* Writes the unit normal of the area of a fan of points about the origin. False if the area is small beside the
    distances: rounding would turn the normal of points along a line. */
 GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], double normal[3]) {
-    static const double none[3] = {0, 0, 0};
     double squares = 0, area[3];
     int32_t k;
-    gproji_copy3(none, normal);
+    gproji_copy3(gproji_zero, normal);
     for (k = 1; k < count; ++k) {
         gproji_cross3(offset[k - 1], offset[k], area);
         gproji_add_scaled3(1, area, normal);
         squares += gproji_dot3(offset[k], offset[k]);
     }
-    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, none);
+    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
 }
 
 /* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
@@ -23239,7 +23214,6 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
     const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
-    size_t length = strlen(result->message);
     int32_t f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
     double off = 0;
     if (statics) gproj_get_loads(form, statics->work, NULL);
@@ -23253,15 +23227,15 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
         if (loaded >= 0) loaded_face = f;
     }
     if (vertex >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
-                      "mean edges off it%s: let some of the held vertices go",
-                      face, vertex, off, planes > 1 ? ", and others likewise" : "");
+        gproji_tell(result,
+                    "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
+                    "mean edges off it%s: let some of the held vertices go",
+                    face, vertex, off, planes > 1 ? ", and others likewise" : "");
     else if (loaded >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
-                      "carry its load: let some of the held vertices go",
-                      loaded_face, loaded);
+        gproji_tell(result,
+                    "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
+                    "carry its load: let some of the held vertices go",
+                    loaded_face, loaded);
     return vertex >= 0 || loaded >= 0;
 }
 
@@ -23292,7 +23266,6 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_part *part;
-    size_t length = strlen(result->message);
     double most = noticeable;
     int32_t *colour = s->looked, vertex = -1, count = 0, faces, v, i;
     /* 1. Is every face, all of which are to be flat, to be circular? */
@@ -23339,12 +23312,11 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     }
     if (vertex < 0) return;
     faces = gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
-    gproji_format(
-        result->message + length, sizeof result->message - length,
-        "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
-        "but in a smooth mesh with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): "
-        "let corners or other vertices of the boundary go, or insert a strip of faces",
-        floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
+    gproji_tell(result,
+                "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
+                "but in a smooth mesh with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): "
+                "let corners or other vertices of the boundary go, or insert a strip of faces",
+                floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
 }
 
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
@@ -23352,7 +23324,6 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
    alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
     int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
     int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
@@ -23370,14 +23341,13 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         if (bend > worst) worst = bend, face = f, corners = count;
     }
     if (bent > 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; face %d cannot become flat, because %d of its vertices are held, %g mean edges off a plane%s: "
-                      "let one of them go%s",
-                      face, corners, worst, bent > 1 ? ", and others likewise" : "",
-                      worst < 1e-6 ? ", or set a larger tolerance" : "");
+        gproji_tell(result,
+                    "; face %d cannot become flat, because %d of its vertices are held, %g mean edges off a plane%s: "
+                    "let one of them go%s",
+                    face, corners, worst, bent > 1 ? ", and others likewise" : "",
+                    worst < 1e-6 ? ", or set a larger tolerance" : "");
     else if (all == vertices)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; all vertices are fixed: let some of them go");
+        gproji_tell(result, "; all vertices are fixed: let some of them go");
     else if (whole) {
         gproji_spread spread;
         memset(&spread, 0, sizeof spread);
@@ -23456,14 +23426,13 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
 GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
     int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
     gproj_group_info most;
-    size_t length = strlen(result->message), size = sizeof result->message - length;
     if (floating >= 0) {
-        gproji_format(result->message + length, size,
-                      "; the part of the mesh with vertex %d has no support that could carry its loads", floating);
+        gproji_tell(result, "; the part of the mesh with vertex %d has no support that could carry its loads",
+                    floating);
     } else if (edge >= 0) {
-        gproji_format(
-            result->message + length, size,
-            "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
+        gproji_tell(result,
+                    "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict",
+                    edge);
     } else {
         memset(&most, 0, sizeof most);
         most.max = 1e-6;
@@ -23474,8 +23443,8 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
                 most = info;
         }
         if (most.max > 1e-6)
-            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
-                          most.worst_element, most.name);
+            gproji_tell(result, "; vertex %d holds back most ('%s'): let it go, or glide", most.worst_element,
+                        most.name);
     }
 }
 
@@ -23559,10 +23528,9 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
-    size_t size = sizeof result->message, length = strlen(result->message);
     double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
     const char *between = "";
-    char *text = result->message;
+    size_t length;
     gproji_damages d;
     int32_t kind, r;
     bool known, plain = !form->solve.loop.options.smooth && !form->solve.loop.options.nearest;
@@ -23575,13 +23543,12 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     if (result->outcome != GPROJ_CONVERGED &&
         !(form->solve.loop.options.nearest && result->residual <= result->tolerance)) {
         if (result->spoiled.total > 0) /* there is worse to tell */
-            gproji_format(text + length, size - length, "; %d faces or edges are spoiled as well%s",
-                          result->spoiled.total, plain ? ": a smooth solve may do better" : "");
+            gproji_tell(result, "; %d faces or edges are spoiled as well%s", result->spoiled.total,
+                        plain ? ": a smooth solve may do better" : "");
         return;
     }
     if (shrunk < 0.2)
-        gproji_format(text + length, size - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+        gproji_tell(result, "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
     if (shrunk < 0.2 || result->spoiled.total == 0) return;
     /* Vertices that glide are led into the corners that stay: the first thing to try. */
     for (part = form->part; part && !plain; part = part->next) {
@@ -23593,36 +23560,31 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     }
     /* The reason, if it is known; all kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge
        ..."; advice, if there is no reason. */
+    length = strlen(result->message);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
-    known = strlen(text) > length;
-    length = strlen(text);
-    length = gproji_append(text, size, length, "; but the mesh is spoiled: ", 27);
+    known = result->message[length] != 0;
+    gproji_tell(result, "; but the mesh is spoiled: ");
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
         int32_t count = d.count[kind], at = d.first[kind];
         if (count == 0) continue;
-        gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
-                      count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
-        length = strlen(text);
+        gproji_tell(result, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
+                    count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
         if (gproji_damage_place(kind) == GPROJ_PLACE_EDGE)
-            gproji_format(text + length, size - length, ", vertices %d and %d)", mesh->origin[2 * at],
-                          mesh->origin[2 * at + 1]);
-        else
-            gproji_append(text, size, length, ")", 1);
-        length = strlen(text);
+            gproji_tell(result, ", vertices %d and %d", mesh->origin[2 * at], mesh->origin[2 * at + 1]);
+        gproji_tell(result, ")");
         between = ", ";
     }
     if (!known && form->solve.loop.options.nearest && !form->solve.loop.options.skip_guard &&
         form->solve.loop.iterations <= GPROJI_SAFE_MOST)
-        gproji_format(text + length, size - length, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
-    else if (!known && length + strlen(help) < size)
-        gproji_append(text, size, length, help, strlen(help));
+        gproji_tell(result, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
+    else if (!known && strlen(result->message) + strlen(help) < sizeof result->message)
+        gproji_tell(result, help);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
 GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
-    size_t length = strlen(result->message);
     int32_t f, face = -1, count = 0;
     for (f = 0; unit > 0 && f < mesh->face_count; ++f) {
         double off;
@@ -23633,10 +23595,10 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
         if (off > worst) worst = off, face = f;
     }
     if (face >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
-                      "lengths): add planarity for circles",
-                      count, count == 1 ? " is" : "s are", face, worst);
+        gproji_tell(result,
+                    "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
+                    "lengths): add planarity for circles",
+                    count, count == 1 ? " is" : "s are", face, worst);
 }
 
 /* Says at which vertices the four faces' angles do not add up as on a cone, w1 + w3 = w2 + w4: with coplanar normals
@@ -23644,7 +23606,6 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
 GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     double worst = 1e-6;
-    size_t length = strlen(result->message);
     int32_t v, vertex = -1, count = 0;
     for (v = 0; v < mesh->vertex_count; ++v) {
         bool four = form->cone[v] >= 0 && gproj_mesh_valence(mesh, v) == 4;
@@ -23653,9 +23614,9 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
         if (off > worst) worst = off, vertex = v;
     }
     if (vertex >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
-                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
+        gproji_tell(result,
+                    "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
+                    count, count == 1 ? "vertex" : "vertices", vertex, worst);
 }
 
 /* ============================================================================================================
@@ -23958,9 +23919,6 @@ GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
 
 /* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
-    static const char shrinks[] =
-        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
-    static const char alone[] = "; wishes that only guide are left out: no whole mesh was found with them";
     gproji_loop *loop = &form->solve.loop;
     gproj_result *result = &loop->result;
     gproji_hooks *hooks = &loop->hooks;
@@ -23997,21 +23955,20 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
     if (gproji_has_active_wish(form) && !loop->wishes.left_out && !gproji_is_held(form))
-        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
+        gproji_tell(result, "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference");
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
         size_t length = strlen(result->message);
         if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
         if (loop->hopeful && !result->message[length]) /* nothing is known against it */
-            gproji_append(result->message, sizeof result->message, length, gproji_more_iterations,
-                          sizeof gproji_more_iterations - 1);
+            gproji_tell(result, gproji_more_iterations);
         doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
         if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
     if (loop->wishes.left_out)
-        gproji_append(result->message, sizeof result->message, strlen(result->message), alone, sizeof alone - 1);
+        gproji_tell(result, "; wishes that only guide are left out: no whole mesh was found with them");
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
     return *result;
@@ -24059,7 +24016,6 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, doubl
    follow have three times as many. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
-    static const char guided[] = "; no whole mesh was found at a minimum of the wishes, which have only guided here";
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
     size_t count = (size_t)gproj_system_variable_count(s);
@@ -24125,15 +24081,12 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         result = gproji_failed_result(gproj_form_error(form));
     }
     result.attempts = attempt;
-    if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0) {
-        size_t length = strlen(result.message);
-        gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
-                      attempt);
-    }
+    if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0)
+        gproji_tell(&result, "; none of %d attempts ended better", attempt);
     if (away && wished && result.outcome != GPROJ_FAILED) {
         if (result.outcome == GPROJ_CONVERGED) result.outcome = GPROJ_ITERATION_LIMIT;
         result.optimality = HUGE_VAL;
-        gproji_append(result.message, sizeof result.message, strlen(result.message), guided, sizeof guided - 1);
+        gproji_tell(&result, "; no whole mesh was found at a minimum of the wishes, which have only guided here");
     }
     gproji_give(&form->heap, start, count, sizeof *start);
     gproji_give(&form->heap, end, count, sizeof *end);
@@ -25040,8 +24993,6 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
 }
 
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
-    static const char stuck[] = "; the handles did not move: what must hold leaves them no freedom";
-    static const char more[] = "; gproj_solve goes on from here";
     gproj_result result;
     gproj_form *form;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
@@ -25062,9 +25013,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         form->solve.finished = false;
         gproji_schedule_release(drag, false);
         if (drag->info.freedom == 0)
-            gproji_append(result.message, sizeof result.message, strlen(result.message), stuck, sizeof stuck - 1);
-        if (result.outcome == GPROJ_ITERATION_LIMIT)
-            gproji_append(result.message, sizeof result.message, strlen(result.message), more, sizeof more - 1);
+            gproji_tell(&result, "; the handles did not move: what must hold leaves them no freedom");
+        if (result.outcome == GPROJ_ITERATION_LIMIT) gproji_tell(&result, "; gproj_solve goes on from here");
     }
     if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);
