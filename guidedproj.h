@@ -2748,6 +2748,12 @@ GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
 }
 
+/* -1, which functions that return a number return after an error. */
+GPROJI_INLINE int32_t gproji_none(gproj_code code) {
+    (void)code;
+    return -1;
+}
+
 GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
@@ -8133,17 +8139,13 @@ GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
     if (!gproji_system_is_open(s)) return -1;
-    if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
-        gproji_refuse(&s->error,
-                      "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
-                      block);
-        return -1;
-    }
-    if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the system would have more than %d variables",
-                    (int32_t)GPROJI_VARIABLES_MAX);
-        return -1;
-    }
+    if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0)
+        return gproji_none(gproji_refuse(
+            &s->error, "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
+            block));
+    if (count > GPROJI_VARIABLES_MAX - s->variable_count)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                                       "the system would have more than %d variables", (int32_t)GPROJI_VARIABLES_MAX));
     for (i = 0; values && i < count; ++i) {
         if (gproji_is_finite(values[i])) continue;
         gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
@@ -8151,10 +8153,8 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count)) {
-        gproji_fail_memory(&s->error);
-        return -1;
-    }
+    if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count))
+        return gproji_none(gproji_fail_memory(&s->error));
     if (s->compiled && count > 0) gproji_system_forget(s);
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
@@ -8199,17 +8199,14 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     gproji_group *g;
     size_t count;
     if (!gproji_system_is_open(s)) return -1;
-    if (!group || !group->name) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
-        return -1;
-    }
+    if (!group || !group->name)
+        return gproji_none(
+            gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name"));
     if (group->kind < GPROJ_CONSTRAINT || group->kind > GPROJ_BOUND || group->place < GPROJ_PLACE_NONE ||
-        group->place > GPROJ_PLACE_COLUMN) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count,
-                    "group '%s': kind %d must be a gproj_kind, and place %d a gproj_place", group->name,
-                    (int32_t)group->kind, (int32_t)group->place);
-        return -1;
-    }
+        group->place > GPROJ_PLACE_COLUMN)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count,
+                                       "group '%s': kind %d must be a gproj_kind, and place %d a gproj_place",
+                                       group->name, (int32_t)group->kind, (int32_t)group->place));
     if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
     count = (size_t)s->group_count;
     s->group = (gproji_group *)gproji_grow(&s->heap, s->group, &s->capacity.group, count + 1, sizeof *s->group);
@@ -8218,10 +8215,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         memset(g, 0, sizeof *g);
         g->row = (gproji_row *)gproji_grow(&s->heap, NULL, &g->capacity.row, 1, sizeof *g->row);
     }
-    if (!g || !g->row) {
-        gproji_fail_memory(&s->error);
-        return -1;
-    }
+    if (!g || !g->row) return gproji_none(gproji_fail_memory(&s->error));
     memset(&g->row[0], 0, sizeof g->row[0]); /* at which the locals of an empty group end */
     gproji_append(g->name, sizeof g->name, 0, group->name, strlen(group->name));
     g->kind = group->kind;
@@ -8418,11 +8412,10 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
     bool valid = gproji_is_finite(constant), contiguous;
     if (s->error.code || group < 0) return -1; /* where no group could be added there is an error of the form's */
     g = &s->group[group];
-    if (count > 0 && !terms) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name, count);
-        return -1;
-    }
+    if (count > 0 && !terms)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
+                                       "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name,
+                                       count));
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
@@ -8431,11 +8424,10 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
             gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
                         "row %d of group '%s', term %d: there is no variable %d", g->row_count, g->name, t,
                         (uint32_t)terms[t].i >= end ? terms[t].i : terms[t].j);
-    if (!valid) {
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
-        return -1;
-    }
+    if (!valid)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                                       "row %d of group '%s' has a coefficient that is not a finite number",
+                                       g->row_count, g->name));
     if (s->compiled) gproji_system_forget(s);
     for (; s->blocks.places < s->variable_count; ++s->blocks.places) s->blocks.place[s->blocks.places] = -1;
     /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
@@ -8472,17 +8464,15 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     if (!gproji_system_is_open(s)) return -1;
-    if (!gproji_system_has_group(s, group) || count < 0) {
-        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                    "a row of %d terms for group %d of %d groups", count, group, s->group_count);
-        return -1;
-    }
+    if (!gproji_system_has_group(s, group) || count < 0)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                                       "a row of %d terms for group %d of %d groups", count, group, s->group_count));
     if (s->group[group].role == GPROJI_CALLERS) return gproji_add_row(s, group, count, terms, constant, element);
-    gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                "group '%s' is the form's: add rows by gproj_form_add_row to groups of gproj_add_rows, or by "
-                "gproj_system_add_row to groups of gproj_system_add_group",
-                s->group[group].name);
-    return -1;
+    return gproji_none(
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                    "group '%s' is the form's: add rows by gproj_form_add_row to groups of gproj_add_rows, or by "
+                    "gproj_system_add_row to groups of gproj_system_add_group",
+                    s->group[group].name));
 }
 
 /* gproji_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
@@ -10772,44 +10762,19 @@ GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task ta
     return largest;
 }
 
-/* The largest of some absolute values, in four parts, so that none has to wait for the one before. */
-typedef struct gproji_maximum {
-    double part[4];
-    int32_t odd[4]; /* numbers that are none, or infinite */
-} gproji_maximum;
-
-GPROJI_INLINE void gproji_maximum_see(gproji_maximum *m, int32_t k, double d) {
-    m->part[k] = d > m->part[k] ? d : m->part[k];
-    m->odd[k] += !(d <= DBL_MAX);
-}
-
-GPROJI_INTERNAL double gproji_maximum_value(const gproji_maximum *m) {
-    if (m->odd[0] + m->odd[1] + m->odd[2] + m->odd[3] > 0) return HUGE_VAL;
-    return gproji_fmax(gproji_fmax(m->part[0], m->part[1]), gproji_fmax(m->part[2], m->part[3]));
-}
+/* |d|; infinite if it is not a number. */
+GPROJI_INLINE double gproji_magnitude(double d) { return fabs(d) <= DBL_MAX ? fabs(d) : HUGE_VAL; }
 
 /* max |x| */
 GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
     gproji_pass *pass = (gproji_pass *)data;
     const gproj_system *s = pass->system;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    gproji_maximum m;
-    memset(&m, 0, sizeof m);
-    for (; v + 4 <= end; v += 4)
-        for (k = 0; k < 4; ++k) gproji_maximum_see(&m, k, fabs(s->x[v + k]));
-    for (; v < end; ++v) gproji_maximum_see(&m, 0, fabs(s->x[v]));
-    pass->largest[task] = gproji_maximum_value(&m);
-}
-
-/* saved = x */
-GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    gproj_system *s = pass->system;
     int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    if (v < end) memcpy(s->vector.saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
-    pass->largest[task] = 0;
+    double largest = 0;
+    for (; v < end; ++v)
+        if (!(fabs(s->x[v]) <= largest)) largest = gproji_magnitude(s->x[v]);
+    pass->largest[task] = largest;
 }
 
 /* x = saved + t dx; the largest |t dx| */
@@ -10817,22 +10782,15 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     gproji_pass *pass = (gproji_pass *)data;
     gproj_system *s = pass->system;
     const double *step = s->vector.step, *saved = s->vector.saved;
-    double *x = s->x, t = pass->t;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    double *x = s->x, t = pass->t, largest = 0;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    gproji_maximum m;
-    memset(&m, 0, sizeof m);
-    for (; v + 4 <= end; v += 4)
-        for (k = 0; k < 4; ++k) {
-            double d = t * step[v + k];
-            gproji_maximum_see(&m, k, fabs(d));
-            x[v + k] = saved[v + k] + d;
-        }
     for (; v < end; ++v) {
-        gproji_maximum_see(&m, 0, fabs(t * step[v]));
-        x[v] = saved[v] + t * step[v];
+        double d = t * step[v];
+        x[v] = saved[v] + d;
+        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
     }
-    pass->largest[task] = gproji_maximum_value(&m);
+    pass->largest[task] = largest;
 }
 
 /* The caller's tolerance, or the residual that rounding allows at this x. */
@@ -10949,6 +10907,10 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 
 /* x = saved + t dx; returns the largest |t dx|, infinite if it is not a number. */
 GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
+
+GPROJI_INTERNAL void gproji_save(gproj_system *s) {
+    if (s->variable_count) memcpy(s->vector.saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+}
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
     if (s->compiled && s->variable_count) memcpy(s->x, s->vector.saved, (size_t)s->variable_count * sizeof *s->x);
@@ -11267,7 +11229,7 @@ GPROJI_INTERNAL bool gproji_recompile(gproji_loop *loop, bool anew) {
     if (loop->options.nearest && !gproji_start_multipliers(s)) gproji_fail_memory(&s->error);
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     return true;
 }
 
@@ -11369,7 +11331,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         epsilon = 0.3 * sqrt(gproji_fmax(0, loop->standing.merit - loop->standing.energy));
         epsilon = gproji_fmin(gproji_fmax(epsilon, loop->epsilon_least), gproji_epsilon_max);
     }
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     loop->iteration.factorisations = 0;
     loop->trust.failed = false;
     for (trial = 0; trial < GPROJI_TRIALS && s->error.code == GPROJ_OK; ++trial) {
@@ -11999,7 +11961,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     bool anew = flat && loop->slides.shift > gproji_nearest_flat, calm;
     double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->slides.shift;
     int32_t i, r;
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     /* Rows that depend on each other let multipliers grow without need, which may hide a minimum: these begin anew. */
     for (i = 0; anew && i < s->group_count; ++i)
         for (r = 0; s->group[i].kind == GPROJ_CONSTRAINT && r < s->group[i].row_count; ++r)
@@ -12689,12 +12651,6 @@ typedef struct gproji_mesh_work {
     int32_t *mark;          /* vertex_count: scratch that each step sets anew */
     int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
-
-/* -1, which functions that return a number return after an error. */
-GPROJI_INLINE int32_t gproji_none(gproj_code code) {
-    (void)code;
-    return -1;
-}
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
@@ -21966,9 +21922,8 @@ GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units unit
     gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
-    gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                "equilibrium: the loads are too large, their squares overflow");
-    return -1;
+    return gproji_none(gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                                   "equilibrium: the loads are too large, their squares overflow"));
 }
 
 /* Finds p->force, the best forces y for the loads p->load at x: those with the least residual in (1), damped towards
