@@ -8238,6 +8238,9 @@ GPROJI_INLINE double gproji_counted(const gproji_group *g, double phi) {
     return g->kind == GPROJ_BOUND && phi >= 0 ? 0 : phi;
 }
 
+/* |d|; infinite if it is not a number: as bad as can be, never overlooked. */
+GPROJI_INLINE double gproji_magnitude(double d) { return fabs(d) <= DBL_MAX ? fabs(d) : HUGE_VAL; }
+
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_t group) {
     gproj_group_info info;
     const gproji_group *g;
@@ -8253,8 +8256,7 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_
     info.schedule = g->schedule;
     info.rows = g->row_count;
     for (r = 0; r < g->row_count; ++r) {
-        double phi = fabs(gproji_counted(g, g->row[r].phi));
-        if (!(phi <= DBL_MAX)) phi = HUGE_VAL;
+        double phi = gproji_magnitude(gproji_counted(g, g->row[r].phi));
         sum += phi * phi;
         if (info.worst_row >= 0 && !(phi > info.max)) continue;
         info.max = phi;
@@ -8301,9 +8303,8 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     for (r = 0; r < count; ++r) worst[r] = 0;
     for (r = 0; r < g->row_count; ++r) {
         int32_t e = g->row[r].element;
-        double phi = fabs(gproji_counted(g, g->row[r].phi));
         if (e < 0 || e >= count || !(g->row[r].weight > 0)) continue;
-        worst[e] = phi <= DBL_MAX ? gproji_fmax(worst[e], phi) : HUGE_VAL;
+        worst[e] = gproji_fmax(worst[e], gproji_magnitude(gproji_counted(g, g->row[r].phi)));
     }
     return true;
 }
@@ -9035,8 +9036,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     double weight2 = g->tally.weight * g->tally.weight;
     for (; r < end; ++r) {
         const gproji_row *row = &g->row[r];
-        double phi = fabs(gproji_counted(g, row->phi));
-        if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
+        double phi = gproji_magnitude(gproji_counted(g, row->phi));
         tally.sum += weight2 * row->weight * row->weight * phi * phi;
         if (tally.row >= 0 && phi <= tally.largest) continue;
         tally.largest = phi;
@@ -10761,9 +10761,6 @@ GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task ta
     for (k = 0; k < pass.tasks; ++k) largest = gproji_fmax(largest, pass.largest[k]);
     return largest;
 }
-
-/* |d|; infinite if it is not a number. */
-GPROJI_INLINE double gproji_magnitude(double d) { return fabs(d) <= DBL_MAX ? fabs(d) : HUGE_VAL; }
 
 /* max |x| */
 GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
@@ -21531,56 +21528,45 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 /* -- making the statics of a form -- */
 
 /* Refuses a second equilibrium, supports that are no list, loads that are no numbers or that nothing carries. */
-GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
-                                                 const gproj_supports *supports) {
+GPROJI_INTERNAL gproj_code gproji_check_equilibrium(gproj_form *form, const gproj_loads *loads,
+                                                    const gproj_supports *supports) {
     int32_t e, v, k, count = supports ? supports->count : 0;
-    if (form->statics) {
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "the form has its equilibrium already: set its schedule, or make a new form");
-        return false;
-    }
-    if (!supports || count < 0 || (count > 0 && !supports->vertex)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "equilibrium: the supports are missing, or their list is");
-        return false;
-    }
-    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
+    if (form->statics)
+        return gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "the form has its equilibrium already: set its schedule, or make a new form");
+    if (!supports || count < 0 || (count > 0 && !supports->vertex))
+        return gproji_refuse(&form->error, "equilibrium: the supports are missing, or their list is");
+    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex))
+        return form->error.code;
     for (v = 0; supports->slides && v < count; ++v) {
         if (supports->slides[v] <= GPROJI_AXES) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
-                    "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
-                    (int32_t)supports->slides[v]);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
+                           "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
+                           (int32_t)supports->slides[v]);
     }
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
-        !gproji_is_finite(loads->snow)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "equilibrium: there are no loads, or density, area load or snow is not a finite number");
-        return false;
-    }
+        !gproji_is_finite(loads->snow))
+        return gproji_refuse(&form->error,
+                             "equilibrium: there are no loads, or density, area load or snow is not a finite number");
     for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) {
         if (gproji_is_finite(loads->edge_density[e])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                    "equilibrium: the density of edge %d is not a finite number", e);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                           "equilibrium: the density of edge %d is not a finite number", e);
     }
     for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v) {
         if (gproji_is_finite(loads->point_load[v])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
-                    "equilibrium: the load on vertex %d is not a finite number", v / 3);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
+                           "equilibrium: the load on vertex %d is not a finite number", v / 3);
     }
     for (v = 0; loads->point_load && v < form->mesh->vertex_count; ++v) {
         const double *load = loads->point_load + 3 * (size_t)v;
         if (form->mesh->vertex_halfedge[v] >= 0 || (load[0] == 0 && load[1] == 0 && load[2] == 0)) continue;
-        for (k = 0; k < count && supports->vertex[k] != v; ++k) {
-        }
+        for (k = 0; k < count && supports->vertex[k] != v; ++k) continue;
         if (k < count) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
-                    "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
+                           "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
     }
-    return true;
+    return GPROJ_OK;
 }
 
 /* Makes form->statics; false without memory. */
@@ -21638,7 +21624,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     size_t count, spokes, edge_terms, most = 0;
     gproj_term *term;
     int32_t *spoke, v;
-    if (!gproji_form_ready(form) || !gproji_equilibrium_is_valid(form, loads, supports)) return -1;
+    if (!gproji_form_ready(form) || gproji_check_equilibrium(form, loads, supports)) return -1;
     if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
     s = form->statics;
@@ -21693,7 +21679,7 @@ static const gproji_rule gproji_compression_rule = {"compression",   GPROJ_BOUND
 static const gproji_rule gproji_tension_rule = {"tension",       GPROJ_BOUND, GPROJ_PLACE_EDGE,
                                                 GPROJI_OWN_NONE, GPROJI_LAZY, NULL};
 
-/* Rows sign y >= 0, y the variable of an edge's density. */
+/* Adds rows sign y for edges with a force, y the variable of the density: >= 0 in bounds, else = 0. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
@@ -21773,14 +21759,12 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
                     edges ? edges[k] : k, sections[k]);
         return -1;
     }
-    part = gproji_new_part(form, &gproji_stress_rule, 2 * count);
+    part = gproji_open_part(form, &gproji_stress_rule, 2 * count, weight);
     if (!part) return -1;
-    part->count = 0;
     part->given[0] = min;
     part->given[1] = max;
     part->factor = (double *)gproji_part_take(part, part->capacity, sizeof *part->factor);
     if (!part->factor) return -1;
-    gproji_add_group(part, weight);
     for (side = 0; side < 2; ++side) {
         for (k = 0; k < count && gproji_form_ready(form); ++k) {
             int32_t edge = edges ? edges[k] : k;
@@ -21818,10 +21802,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     int32_t f, k;
     if (!gproji_has_statics(form, "force fairness")) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_force_fairness_rule, 4 * mesh->face_count);
+    part = gproji_open_part(form, &gproji_force_fairness_rule, 4 * mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; mesh->face_degree[f] == 4 && k < 2; ++k, h = mesh->next[h]) {
@@ -22165,17 +22147,6 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
 static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,   GPROJ_PLACE_EDGE,
                                                        GPROJI_OWN_FORCES, GPROJI_GUIDE, NULL};
 
-/* Adds the group that draws the forces to their start. */
-GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    gproj_term term;
-    int32_t group = gproji_new_group(form, &gproji_force_guidance_rule, 0), e;
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
-        gproji_set_term(&term, s->force[e], -1, 1);
-        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, e);
-    }
-}
-
 /* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
 GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
     gproji_statics *s = form->statics;
@@ -22194,7 +22165,8 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
         gproji_pool_give_all(&p.pool);
         s->started = gproji_form_ready(form);
     }
-    if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES)) gproji_add_force_guidance(form);
+    if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES))
+        gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     guidance = gproji_own_group(form, GPROJI_OWN_FORCES);
     if (guidance < 0) return;
     if (!wishes) schedule.decay = 0.3;
@@ -23415,17 +23387,10 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     bool follow; /* loads that vanish with the shape */
     int32_t r, e;
     if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
-    load = (double *)gproji_take(&form->heap, count, sizeof *load);
-    if (!load) {
-        gproji_fail_memory(&form->error);
-        *result = gproji_failed_result(gproj_form_error(form));
-        return;
-    }
     /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
-    loads = &s->loads;
+    loads = &s->loads, load = s->work;
     gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
-    gproji_give(&form->heap, load, count, sizeof *load);
     g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
         if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
@@ -23727,7 +23692,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
     if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
-    if (own == GPROJI_OWN_FORCES) gproji_add_force_guidance(form);
+    if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
     if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
 }
