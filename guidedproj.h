@@ -7783,7 +7783,7 @@ typedef enum gproji_role {
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUIDE,     /* a wish that the library adds */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
-    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure */
+    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure_of */
     GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
@@ -7900,12 +7900,12 @@ typedef struct gproji_schur {
     double *root;        /* L^-1, D = L L' */
     double *side;        /* 1 + wide_count columns: r + W b, and W U; then z and Y */
     double *share;       /* multipliers: their addition to eps^2 at the element's nodes, over eps^2 */
-    double *metric;      /* nodes: E, 1 + the sum over these */
     uint8_t *turns;      /* nodes: is it in a row with local unknowns? */
     double *triangle;    /* elements x triangle_size: R, with a reciprocal diagonal */
     double *work;        /* chunks x most */
     int32_t chunks, triangle_size;
-    int64_t most; /* doubles in `work` for one chunk */
+    int64_t most;    /* doubles in `work` for one chunk */
+    double epsilon2; /* squared regularisation in this step */
 } gproji_schur;
 
 /* Narrow rows by the fronts that load them. */
@@ -8309,18 +8309,14 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     return true;
 }
 
-/* Counts what was added to a system. Of this nothing is ever taken away, so an equal number means equal structure. */
-typedef struct gproji_structure {
-    int32_t groups;
-    int64_t all; /* variables, groups and rows, but for those of safeguards, which come on demand */
-} gproji_structure;
-
-GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
-    gproji_structure structure = {s->group_count, (int64_t)s->variable_count + s->group_count};
+/* Counts what was added to a system: variables, groups and rows, but for those of safeguards, which come on demand. Of
+   this nothing is ever taken away, so an equal number means equal structure. */
+GPROJI_INTERNAL int64_t gproji_structure_of(const gproj_system *s) {
+    int64_t all = (int64_t)s->variable_count + s->group_count;
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        structure.all += s->group[i].role == GPROJI_SAFEGUARD ? 0 : s->group[i].row_count;
-    return structure;
+        if (s->group[i].role != GPROJI_SAFEGUARD) all += s->group[i].row_count;
+    return all;
 }
 
 /* Counts the variables that the terms name. */
@@ -9683,7 +9679,6 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
     d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * multipliers, sizeof(double));
     d->share = (double *)gproji_pool_take(pool, multipliers, sizeof(double));
-    d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
     d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = gproji_take_aligned(pool, d->chunks * d->most);
@@ -10039,13 +10034,8 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
         }
 }
 
-typedef struct gproji_assembly {
-    const gproj_system *system;
-    double epsilon2;
-} gproji_assembly;
-
 /* Computes C, r and R for a batch, and additions to E at the nodes. */
-GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
+GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a) {
     const gproji_schur *d = &s->schur;
     const int32_t size = GPROJI_SCHUR_LOCALS;
     int32_t j, k, lane, together;
@@ -10062,9 +10052,9 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
     gproji_take_triangle(a, a->m, a->zero_sum, size);
     for (lane = 0; lane < a->lanes; ++lane) {
         double *triangle = d->triangle + (int64_t)(a->first + lane) * d->triangle_size, heaviest = a->heaviest[lane];
-        double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / epsilon2) : 0;
+        double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / d->epsilon2) : 0;
         for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + lane];
-        if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
+        if (share == 1 / d->epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * d->epsilon2);
         a->share[lane] = share * gproji_schur_share;
     }
     /* 3. Multipliers: columns of Q behind the first `count`, which span N. */
@@ -10116,8 +10106,7 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
 
 /* Computes C, r and R for one chunk of elements, batch by batch. */
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    const gproj_system *s = assembly->system;
+    const gproj_system *s = (const gproj_system *)data;
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
@@ -10142,13 +10131,14 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
         a.triangle = a.diagonal + a.count * GPROJI_LANES;
         a.q = a.triangle + a.count * a.count * GPROJI_LANES;
         a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
-        gproji_schur_alike(s, &a, assembly->epsilon2);
+        gproji_schur_alike(s, &a);
     }
 }
 
 /* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
-GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
+GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size) {
     const gproji_schur *d = &s->schur;
+    const double epsilon2 = d->epsilon2;
     double *root = d->root + d->root_start[v], *b = s->vector.step + s->nodes.first[v],
            *w = d->w.value + d->w.value_start[v];
     bool plain = d->own_start[v] == d->own_start[v + 1];
@@ -10156,7 +10146,6 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     int64_t k;
     int32_t i, j, p;
     for (k = d->w.entry_start[v]; d->turns[v] && k < d->w.entry_start[v + 1]; ++k) share += d->share[d->w.entry[k]];
-    d->metric[v] = share;
     corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
     for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
     memset(b, 0, (size_t)size * sizeof *b);
@@ -10199,8 +10188,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
 
 /* Computes these at one chunk of nodes; local unknowns rest at 0. */
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    const gproj_system *s = assembly->system;
+    const gproj_system *s = (const gproj_system *)data;
     int32_t v = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk);
     int32_t end = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
@@ -10208,9 +10196,9 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
         if (s->blocks.auxiliary[s->nodes.first[v]])
             memset(s->vector.step + s->nodes.first[v], 0, (size_t)size * sizeof *s->vector.step);
         else if (size == 3)
-            gproji_schur_node(s, v, 3, assembly->epsilon2);
+            gproji_schur_node(s, v, 3);
         else
-            gproji_schur_node(s, v, size, assembly->epsilon2);
+            gproji_schur_node(s, v, size);
     }
 }
 
@@ -10419,12 +10407,11 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
 /* Assembles matrix and right-hand sides for a step. */
 GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
-    gproji_assembly assembly;
-    assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
+    d->epsilon2 = epsilon * epsilon;
     /* w g, without local unknowns; gproji_schur_node turns them into U. */
     s->wide.acting = gproji_wide_columns(s, (size_t)s->wide.kept);
-    gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
-    gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, s);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, s);
     if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
@@ -19044,7 +19031,7 @@ typedef struct gproji_solve {
     bool finished; /* it has ended: the loop's result is the verdict */
     bool futile;   /* and something that it was asked for can never hold */
     gproji_loop loop;
-    gproji_structure structure; /* of the system at the beginning */
+    int64_t structure; /* of the system at the beginning: gproji_structure_of */
 } gproji_solve;
 
 /* Arrays that builders and refreshes fill in and use at once. */
@@ -21690,7 +21677,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rul
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
         gproji_set_term(&term, form->statics->force[edge], -1, sign);
-        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, edge);
+        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, rule->place == GPROJ_PLACE_EDGE ? edge : -1);
     }
     return gproji_built(form, group);
 }
@@ -22147,36 +22134,6 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
 static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,   GPROJ_PLACE_EDGE,
                                                        GPROJI_OWN_FORCES, GPROJI_GUIDE, NULL};
 
-/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
-    gproji_statics *s = form->statics;
-    gproj_schedule schedule = wishes ? gproj_guide(0.3) : gproj_fade(1, 5);
-    gproji_balance p;
-    bool guided = false;
-    const double *x;
-    int32_t guidance, e, row = 0;
-    if (!s || !gproji_is_on(form, s->group)) return;
-    s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
-        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
-           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
-           solve for the nearest mesh forces are free. */
-        guided = gproji_start_forces(form, nearest, &p) && !nearest;
-        gproji_pool_give_all(&p.pool);
-        s->started = gproji_form_ready(form);
-    }
-    if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES))
-        gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
-    guidance = gproji_own_group(form, GPROJI_OWN_FORCES);
-    if (guidance < 0) return;
-    if (!wishes) schedule.decay = 0.3;
-    if (!guided) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, guidance, schedule);
-    x = gproj_system_values(form->system);
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
-        if (s->force[e] >= 0) gproj_system_set_row(form->system, guidance, row++, NULL, -x[s->force[e]]);
-}
-
 /* -- forces for the caller -- */
 
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
@@ -22445,18 +22402,10 @@ GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
     return s && gproji_is_on(form, s->group) && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
 }
 
-/* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
-   iterations. */
-GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
-    gproji_part *part;
+/* Notes the areas that the guarded faces have when a solve begins. */
+GPROJI_INTERNAL void gproji_begin_guard(const gproji_part *part) {
+    const gproj_form *form = part->form;
     int32_t i;
-    bool wanted = !skip && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    if (wanted && !gproji_own_part(form, GPROJI_OWN_GUARD)) gproji_add_guard(form);
-    part = gproji_own_part(form, GPROJI_OWN_GUARD);
-    if (!part || !gproji_form_ready(form)) return;
-    gproj_system_set_schedule(
-        form->system, part->group,
-        gproj_fade(wanted ? gproji_guard_weight : 0, gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; i < part->count; ++i)
         gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
                            gproji_guarded_areas(part) + 3 * (size_t)i);
@@ -22837,25 +22786,17 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     gproji_add_group(part, 0);
 }
 
-/* Sets the safeguards, if asked for and of use, for a solve that begins: no corner acts yet. */
-GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
-    bool wanted = asked && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    const gproj_mesh *mesh = form->mesh;
-    const double *x;
-    const gproji_group *g;
-    gproji_corners *corners;
-    gproji_part *part;
+/* Begins a solve, in which no corner acts yet: notes the sizes that corners and edges have, if they are to be kept. */
+GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
+    gproj_system *s = part->form->system;
+    const gproj_mesh *mesh = part->form->mesh;
+    const gproji_group *g = gproji_group_at(s, part->group);
+    const double *x = gproj_system_values(s);
+    gproji_corners *corners = gproji_corners_of(part);
+    bool wanted = gproji_is_on(part->form, part->group);
     int32_t r, f, h, c, e;
-    if (wanted && !gproji_own_part(form, GPROJI_OWN_CORNERS)) gproji_add_corners(form);
-    part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    if (!part || !gproji_form_ready(form)) return;
-    corners = gproji_corners_of(part);
-    gproj_system_set_schedule(form->system, part->group, gproj_keep(wanted ? gproji_corner_weight : 0));
     corners->rounds = 0;
-    g = gproji_group_at(form->system, part->group);
-    for (r = 0; r < g->row_count; ++r) gproji_set_row(form->system, part->group, r, 0, g->row[r].constant);
-    x = gproj_system_values(form->system);
-    /* The sizes that corners and edges have now. */
+    for (r = 0; r < g->row_count; ++r) gproji_set_row(s, part->group, r, 0, g->row[r].constant);
     for (f = 0; wanted && f < mesh->face_count; ++f) {
         double area[3], *axis = corners->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
@@ -23585,10 +23526,7 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t i;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        gproji_own own = gproji_own_of(form, i);
-        if (g->role < GPROJI_GUARD && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
-            g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0)
-            return true;
+        if (g->role < GPROJI_GUIDE && g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0) return true;
     }
     return false;
 }
@@ -23617,6 +23555,8 @@ enum {
 
 static const gproji_rule gproji_smooth_change_rule = {"smooth change",   GPROJ_WISH,    GPROJ_PLACE_NONE,
                                                       GPROJI_OWN_METRIC, GPROJI_METRIC, NULL};
+/* Measures how forces change. They are free while all goes well, so that the shape moves no more than it must; once
+   steps fail, as with many forces at their bounds, they are braked, too. */
 static const gproji_rule gproji_force_change_rule = {"force change",   GPROJ_WISH,   GPROJ_PLACE_NONE,
                                                      GPROJI_OWN_BRAKE, GPROJI_BRAKE, NULL};
 
@@ -23660,21 +23600,6 @@ GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, int32_t group) {
     }
 }
 
-/* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more
-   than it must; once steps fail, as with many forces at their bounds, they are braked, too. */
-GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
-    static const gproj_term one = {0, -1, 1};
-    gproj_system *s = form->system;
-    int32_t group = gproji_new_group(form, &gproji_force_change_rule, 0), e;
-    if (group < 0) return;
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
-        int32_t *local;
-        if (form->statics->force[e] < 0) continue;
-        local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
-        if (local) *local = form->statics->force[e];
-    }
-}
-
 /* -- the groups that the library adds to a form -- */
 
 static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
@@ -23694,7 +23619,45 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
     if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
-    if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
+    if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
+}
+
+/* Gives a group of the library's own its schedule; adds it, if it is missing and gets a weight. Returns the part; NULL:
+   there is none, or the form has an error. */
+GPROJI_INTERNAL gproji_part *gproji_schedule_own(gproj_form *form, gproji_own own, gproj_schedule schedule) {
+    gproji_part *part;
+    if (schedule.weight > 0) gproji_add_own_group(form, own);
+    part = gproji_own_part(form, own);
+    if (!part || !gproji_form_ready(form)) return NULL;
+    gproj_system_set_schedule(form->system, part->group, schedule);
+    return part;
+}
+
+/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
+    gproji_statics *s = form->statics;
+    gproj_schedule schedule = wishes ? gproj_guide(0.3) : gproj_fade(1, 5);
+    gproji_balance p;
+    bool guided = false;
+    const gproji_part *part;
+    const double *x;
+    int32_t e, row = 0;
+    if (!s || !gproji_is_on(form, s->group)) return;
+    s->lost[0] = s->lost[1] = 0;
+    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
+        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
+           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
+           solve for the nearest mesh forces are free. */
+        guided = gproji_start_forces(form, nearest, &p) && !nearest;
+        gproji_pool_give_all(&p.pool);
+        s->started = gproji_form_ready(form);
+    }
+    if (!wishes) schedule.decay = 0.3;
+    if (!guided) schedule.weight = 0;
+    part = gproji_schedule_own(form, GPROJI_OWN_FORCES, schedule);
+    x = gproj_system_values(form->system);
+    for (e = 0; part && e < form->mesh->edge_count; ++e)
+        if (s->force[e] >= 0) gproj_system_set_row(form->system, part->group, row++, NULL, -x[s->force[e]]);
 }
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
@@ -23705,18 +23668,15 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
-    int32_t half = gproji_max(1, iterations - iterations / 2), closeness, i;
-    gproj_schedule schedule;
-    if (wanted || nearby) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
-    closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
-    if (closeness >= 0) {
-        schedule = nearby ? gproj_fade(beginning->closeness, 20) : gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
-        schedule.decay = nearby ? 0.7 : 0.3;
-        if (nearest && wanted) schedule = gproj_keep(1);
-        gproj_system_set_schedule(form->system, closeness, schedule);
-        for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
-            gproj_system_set_row(form->system, closeness, i, NULL, -gproj_system_values(form->system)[i]);
-    }
+    int32_t half = gproji_max(1, iterations - iterations / 2), i;
+    gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
+    const gproji_part *part;
+    if (nearby) schedule = gproj_fade(beginning->closeness, 20);
+    schedule.decay = nearby ? 0.7 : 0.3;
+    if (nearest && wanted) schedule = gproj_keep(1);
+    part = gproji_schedule_own(form, GPROJI_OWN_CLOSENESS, schedule);
+    for (i = 0; part && i < 3 * form->mesh->vertex_count; ++i)
+        gproj_system_set_row(form->system, part->group, i, NULL, -gproj_system_values(form->system)[i]);
     if (nearest) return GPROJI_NEAREST_GUIDED;
     return others ? half : wanted ? gproji_min(5, half) : 0;
 }
@@ -23768,7 +23728,9 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, ending = false;
+    bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, whole, corners,
+         ending = false;
     bool started = form->statics && form->statics->started;
     const gproji_part *part;
     double largest = 0; /* weight of a caller's wish */
@@ -23783,23 +23745,22 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness > 0);
-    if (!gproji_form_ready(form)) goto failed;
-    guided = gproji_set_default_guidance(form, iterations, beginning, (options && options->skip_closeness) || smooth,
-                                         nearest);
+    guided = gproji_set_default_guidance(form, iterations, beginning, skip_closeness || smooth, nearest);
     /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
-    metric = smooth && !options->skip_closeness;
-    if (metric) gproji_add_own_group(form, GPROJI_OWN_METRIC);
-    if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
-    if (!gproji_form_ready(form)) goto failed;
-    part = gproji_own_part(form, GPROJI_OWN_METRIC);
+    metric = smooth && !skip_closeness;
     anchored = metric && beginning->stiffness <= 1 && !gproji_has_active_wish(form);
-    if (metric) gproji_set_metric(form, part->group);
-    if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
-    part = gproji_own_part(form, GPROJI_OWN_BRAKE);
-    if (part)
-        gproj_system_set_schedule(form->system, part->group, gproj_keep(metric && forces ? gproji_metric_force : 0));
-    gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
-    gproji_set_corners(form, (smooth || (nearest && iterations > GPROJI_SAFE_MOST)) && !options->skip_guard);
+    part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
+    if (part && metric) gproji_set_metric(form, part->group);
+    gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
+    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. */
+    whole = !skip_guard && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    part = gproji_schedule_own(form, GPROJI_OWN_GUARD,
+                               gproj_fade(whole && !smooth ? gproji_guard_weight : 0,
+                                          gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
+    if (part) gproji_begin_guard(part);
+    corners = whole && (smooth || (nearest && iterations > GPROJI_SAFE_MOST));
+    part = gproji_schedule_own(form, GPROJI_OWN_CORNERS, gproj_keep(corners ? gproji_corner_weight : 0));
+    if (part) gproji_begin_corners(part);
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, beginning->stiffness, anchored, iterations, options);
@@ -24079,7 +24040,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
         return gproji_end_frames(
             solve, GPROJ_ERROR_ARGUMENT,
             "advance: seconds must not be negative, and need a clock in the host, as gproj_default_host has");
-    if (solve->on && gproji_structure_of(form->system).all != solve->structure.all)
+    if (solve->on && gproji_structure_of(form->system) != solve->structure)
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
@@ -24398,10 +24359,11 @@ struct gproj_drag {
     gproji_heap heap;
     gproj_error error;
     gproj_form *form;
-    gproji_structure structure; /* of the system at the beginning */
+    int64_t structure; /* of the system at the beginning: gproji_structure_of */
     gproj_drag_options options;
     gproj_drag_info info;
     gproji_handle_list handle;
+    int32_t groups;    /* of the system at the beginning */
     int32_t columns;   /* 3 * handles */
     int32_t variables; /* of the system */
     double *first;     /* 3 * vertex_count: the vertices at the beginning */
@@ -24584,7 +24546,7 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     } else if (drag->released) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: the handles have been released; end or cancel it");
-    } else if (gproji_structure_of(drag->form->system).all != drag->structure.all) {
+    } else if (gproji_structure_of(drag->form->system) != drag->structure) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
     }
@@ -24678,6 +24640,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     int64_t m = 3 * (int64_t)h->count, n = gproj_system_variable_count(form->system),
             entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
+    drag->groups = gproj_system_group_count(form->system);
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
     drag->before.state_size = gproj_state_size(form);
@@ -24698,8 +24661,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
     drag->name = gproji_take_ints(pool, m);
-    drag->before.schedule =
-        (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->before.schedule);
+    drag->before.schedule = (gproj_schedule *)gproji_pool_take(pool, drag->groups, sizeof *drag->before.schedule);
     drag->before.state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->before.state_size, 1);
     return !pool->failed;
 }
@@ -24833,7 +24795,10 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_schedule fairness = gproj_fade(on ? gproji_drag_fairness : 0, GPROJI_DRAG_GUIDED);
     gproj_schedule handles = gproj_fade(on ? 1 : 0, GPROJI_DRAG_GUIDED);
     int32_t g;
-    for (g = 0; g < drag->structure.groups; ++g) {
+    fairness.decay = handles.decay = gproji_drag_decay;
+    gproji_schedule_own(form, GPROJI_OWN_DRAG_FAIRNESS, fairness);
+    gproji_schedule_own(form, GPROJI_OWN_DRAG_HANDLES, handles);
+    for (g = 0; g < drag->groups && gproji_form_ready(form); ++g) {
         const gproji_group *group = gproji_group_at(form->system, g);
         gproj_schedule schedule;
         if (group->kind != GPROJ_WISH || gproji_own_of(form, g)) continue;
@@ -24842,9 +24807,6 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
         if (on && !drag->options.keep_wishes) schedule.weight = 0;
         gproj_system_set_schedule(form->system, g, schedule);
     }
-    fairness.decay = handles.decay = gproji_drag_decay;
-    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), fairness);
-    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
@@ -24875,8 +24837,7 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     s = form->system;
     drag->released = true;
     gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    gproji_schedule_release(drag, true);
     if (!gproji_form_ready(form)) return false;
     soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
     fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
@@ -24904,7 +24865,6 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-    gproji_schedule_release(drag, true);
     /* 2. A solve is refused during a drag, but for this one. */
     form->drag = NULL;
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, &gproji_beginnings[0], NULL);
