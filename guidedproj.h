@@ -2772,6 +2772,12 @@ GPROJI_INTERNAL gproj_code gproji_fail_memory(gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_MEMORY, GPROJ_PLACE_NONE, -1, "out of memory");
 }
 
+/* -1, which functions that return a number return after an error. */
+GPROJI_INLINE int32_t gproji_none(gproj_code code) {
+    (void)code;
+    return -1;
+}
+
 GPROJI_INTERNAL void gproji_error_clear(gproj_error *error) {
     if (!error) return;
     memset(error, 0, sizeof *error);
@@ -7734,7 +7740,7 @@ typedef enum gproji_role {
     GPROJI_DENSE,     /* rows in all vertices: not in the sparse matrix (gproj_group.global) */
     GPROJI_GUIDE,     /* a wish that the library adds */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
-    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure */
+    GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure_of */
     GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
@@ -7851,12 +7857,12 @@ typedef struct gproji_schur {
     double *root;        /* L^-1, D = L L' */
     double *side;        /* 1 + wide_count columns: r + W b, and W U; then z and Y */
     double *share;       /* multipliers: their addition to eps^2 at the element's nodes, over eps^2 */
-    double *metric;      /* nodes: E, 1 + the sum over these */
     uint8_t *turns;      /* nodes: is it in a row with local unknowns? */
     double *triangle;    /* elements x triangle_size: R, with a reciprocal diagonal */
     double *work;        /* chunks x most */
     int32_t chunks, triangle_size;
-    int64_t most; /* doubles in `work` for one chunk */
+    int64_t most;    /* doubles in `work` for one chunk */
+    double epsilon2; /* squared regularisation in this step */
 } gproji_schur;
 
 /* Narrow rows by the fronts that load them. */
@@ -8090,17 +8096,13 @@ GPROJI_INTERNAL bool gproji_reserve_variables(gproj_system *s, size_t count) {
 GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int32_t block, const double *values) {
     int32_t first, i;
     if (!gproji_system_is_open(s)) return -1;
-    if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0) {
-        gproji_refuse(&s->error,
-                      "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
-                      block);
-        return -1;
-    }
-    if (count > GPROJI_VARIABLES_MAX - s->variable_count) {
-        gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the system would have more than %d variables",
-                    (int32_t)GPROJI_VARIABLES_MAX);
-        return -1;
-    }
+    if (block < 1 || block > GPROJI_BLOCK_MAX || count < 0 || count % block != 0)
+        return gproji_none(gproji_refuse(
+            &s->error, "%d variables in blocks of %d: blocks have 1 to 8 variables and the count is a multiple", count,
+            block));
+    if (count > GPROJI_VARIABLES_MAX - s->variable_count)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
+                                       "the system would have more than %d variables", (int32_t)GPROJI_VARIABLES_MAX));
     for (i = 0; values && i < count; ++i) {
         if (gproji_is_finite(values[i])) continue;
         gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
@@ -8108,10 +8110,8 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
         return -1;
     }
     first = s->variable_count;
-    if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count)) {
-        gproji_fail_memory(&s->error);
-        return -1;
-    }
+    if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count))
+        return gproji_none(gproji_fail_memory(&s->error));
     if (s->compiled && count > 0) gproji_system_forget(s);
     for (i = 0; i < count; ++i) {
         s->x[first + i] = values ? values[i] : 0.0;
@@ -8156,17 +8156,14 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
     gproji_group *g;
     size_t count;
     if (!gproji_system_is_open(s)) return -1;
-    if (!group || !group->name) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name");
-        return -1;
-    }
+    if (!group || !group->name)
+        return gproji_none(
+            gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count, "a group needs a name"));
     if (group->kind < GPROJ_CONSTRAINT || group->kind > GPROJ_BOUND || group->place < GPROJ_PLACE_NONE ||
-        group->place > GPROJ_PLACE_COLUMN) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count,
-                    "group '%s': kind %d must be a gproj_kind, and place %d a gproj_place", group->name,
-                    (int32_t)group->kind, (int32_t)group->place);
-        return -1;
-    }
+        group->place > GPROJ_PLACE_COLUMN)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, s->group_count,
+                                       "group '%s': kind %d must be a gproj_kind, and place %d a gproj_place",
+                                       group->name, (int32_t)group->kind, (int32_t)group->place));
     if (gproji_check_schedule(s, group->name, group->schedule) != GPROJ_OK) return -1;
     count = (size_t)s->group_count;
     s->group = (gproji_group *)gproji_grow(&s->heap, s->group, &s->capacity.group, count + 1, sizeof *s->group);
@@ -8175,10 +8172,7 @@ GPROJ_API int32_t gproj_system_add_group(gproj_system *s, const gproj_group *gro
         memset(g, 0, sizeof *g);
         g->row = (gproji_row *)gproji_grow(&s->heap, NULL, &g->capacity.row, 1, sizeof *g->row);
     }
-    if (!g || !g->row) {
-        gproji_fail_memory(&s->error);
-        return -1;
-    }
+    if (!g || !g->row) return gproji_none(gproji_fail_memory(&s->error));
     memset(&g->row[0], 0, sizeof g->row[0]); /* at which the locals of an empty group end */
     gproji_append(g->name, sizeof g->name, 0, group->name, strlen(group->name));
     g->kind = group->kind;
@@ -8201,6 +8195,9 @@ GPROJI_INLINE double gproji_counted(const gproji_group *g, double phi) {
     return g->kind == GPROJ_BOUND && phi >= 0 ? 0 : phi;
 }
 
+/* |d|; infinite if it is not a number: as bad as can be, never overlooked. */
+GPROJI_INLINE double gproji_magnitude(double d) { return fabs(d) <= DBL_MAX ? fabs(d) : HUGE_VAL; }
+
 GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_t group) {
     gproj_group_info info;
     const gproji_group *g;
@@ -8216,8 +8213,7 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_
     info.schedule = g->schedule;
     info.rows = g->row_count;
     for (r = 0; r < g->row_count; ++r) {
-        double phi = fabs(gproji_counted(g, g->row[r].phi));
-        if (!(phi <= DBL_MAX)) phi = HUGE_VAL;
+        double phi = gproji_magnitude(gproji_counted(g, g->row[r].phi));
         sum += phi * phi;
         if (info.worst_row >= 0 && !(phi > info.max)) continue;
         info.max = phi;
@@ -8264,25 +8260,20 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     for (r = 0; r < count; ++r) worst[r] = 0;
     for (r = 0; r < g->row_count; ++r) {
         int32_t e = g->row[r].element;
-        double phi = fabs(gproji_counted(g, g->row[r].phi));
         if (e < 0 || e >= count || !(g->row[r].weight > 0)) continue;
-        worst[e] = phi <= DBL_MAX ? gproji_fmax(worst[e], phi) : HUGE_VAL;
+        worst[e] = gproji_fmax(worst[e], gproji_magnitude(gproji_counted(g, g->row[r].phi)));
     }
     return true;
 }
 
-/* Counts what was added to a system. Of this nothing is ever taken away, so an equal number means equal structure. */
-typedef struct gproji_structure {
-    int32_t groups;
-    int64_t all; /* variables, groups and rows, but for those of safeguards, which come on demand */
-} gproji_structure;
-
-GPROJI_INTERNAL gproji_structure gproji_structure_of(const gproj_system *s) {
-    gproji_structure structure = {s->group_count, (int64_t)s->variable_count + s->group_count};
+/* Counts what was added to a system: variables, groups and rows, but for those of safeguards, which come on demand. Of
+   this nothing is ever taken away, so an equal number means equal structure. */
+GPROJI_INTERNAL int64_t gproji_structure_of(const gproj_system *s) {
+    int64_t all = (int64_t)s->variable_count + s->group_count;
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        structure.all += s->group[i].role == GPROJI_SAFEGUARD ? 0 : s->group[i].row_count;
-    return structure;
+        if (s->group[i].role != GPROJI_SAFEGUARD) all += s->group[i].row_count;
+    return all;
 }
 
 /* Counts the variables that the terms name. */
@@ -8375,11 +8366,10 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
     bool valid = gproji_is_finite(constant), contiguous;
     if (s->error.code || group < 0) return -1; /* where no group could be added there is an error of the form's */
     g = &s->group[group];
-    if (count > 0 && !terms) {
-        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name, count);
-        return -1;
-    }
+    if (count > 0 && !terms)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, g->row_count,
+                                       "row %d of group '%s' has %d terms, but no list of them", g->row_count, g->name,
+                                       count));
     /* 1. Checks all terms without a branch: a j that is -1 becomes 0 here, and other negative numbers become large. */
     for (t = 0; t < count; ++t)
         valid &= ((uint32_t)terms[t].i < end) & ((uint32_t)terms[t].j + 1 <= end) & gproji_is_finite(terms[t].a);
@@ -8388,11 +8378,10 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
             gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, g->row_count,
                         "row %d of group '%s', term %d: there is no variable %d", g->row_count, g->name, t,
                         (uint32_t)terms[t].i >= end ? terms[t].i : terms[t].j);
-    if (!valid) {
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
-                    "row %d of group '%s' has a coefficient that is not a finite number", g->row_count, g->name);
-        return -1;
-    }
+    if (!valid)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, g->row_count,
+                                       "row %d of group '%s' has a coefficient that is not a finite number",
+                                       g->row_count, g->name));
     if (s->compiled) gproji_system_forget(s);
     for (; s->blocks.places < s->variable_count; ++s->blocks.places) s->blocks.place[s->blocks.places] = -1;
     /* 2. Makes room. Terms name at most two variables each; only if that is too many they are counted. */
@@ -8429,17 +8418,15 @@ GPROJI_INTERNAL int32_t gproji_add_row(gproj_system *s, int32_t group, int32_t c
 GPROJ_API int32_t gproj_system_add_row(gproj_system *s, int32_t group, int32_t count, const gproj_term *terms,
                                        double constant, int32_t element) {
     if (!gproji_system_is_open(s)) return -1;
-    if (!gproji_system_has_group(s, group) || count < 0) {
-        gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
-                    "a row of %d terms for group %d of %d groups", count, group, s->group_count);
-        return -1;
-    }
+    if (!gproji_system_has_group(s, group) || count < 0)
+        return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, group,
+                                       "a row of %d terms for group %d of %d groups", count, group, s->group_count));
     if (s->group[group].role == GPROJI_CALLERS) return gproji_add_row(s, group, count, terms, constant, element);
-    gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
-                "group '%s' is the form's: add rows by gproj_form_add_row to groups of gproj_add_rows, or by "
-                "gproj_system_add_row to groups of gproj_system_add_group",
-                s->group[group].name);
-    return -1;
+    return gproji_none(
+        gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
+                    "group '%s' is the form's: add rows by gproj_form_add_row to groups of gproj_add_rows, or by "
+                    "gproj_system_add_row to groups of gproj_system_add_group",
+                    s->group[group].name));
 }
 
 /* gproji_add_row without checks, for builders: adds `rows` rows with equal terms to a group that is not
@@ -9006,8 +8993,7 @@ GPROJI_INTERNAL void gproji_tally_task(void *data, int32_t task) {
     double weight2 = g->tally.weight * g->tally.weight;
     for (; r < end; ++r) {
         const gproji_row *row = &g->row[r];
-        double phi = fabs(gproji_counted(g, row->phi));
-        if (!(phi <= DBL_MAX)) phi = HUGE_VAL; /* not a number: as bad as can be, never overlooked */
+        double phi = gproji_magnitude(gproji_counted(g, row->phi));
         tally.sum += weight2 * row->weight * row->weight * phi * phi;
         if (tally.row >= 0 && phi <= tally.largest) continue;
         tally.largest = phi;
@@ -9654,7 +9640,6 @@ GPROJI_INTERNAL bool gproji_schur_take(gproj_system *s) {
     d->root = (double *)gproji_pool_take(pool, roots, sizeof(double));
     d->side = (double *)gproji_pool_take(pool, ((int64_t)s->wide_count + 1) * multipliers, sizeof(double));
     d->share = (double *)gproji_pool_take(pool, multipliers, sizeof(double));
-    d->metric = (double *)gproji_pool_take(pool, nodes, sizeof(double));
     d->turns = (uint8_t *)gproji_pool_take_zeroed(pool, nodes, 1);
     d->triangle = (double *)gproji_pool_take(pool, (int64_t)d->elements * d->triangle_size, sizeof(double));
     d->work = gproji_take_aligned(pool, d->chunks * d->most);
@@ -10010,13 +9995,8 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
         }
 }
 
-typedef struct gproji_assembly {
-    const gproj_system *system;
-    double epsilon2;
-} gproji_assembly;
-
 /* Computes C, r and R for a batch, and additions to E at the nodes. */
-GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, double epsilon2) {
+GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a) {
     const gproji_schur *d = &s->schur;
     const int32_t size = GPROJI_SCHUR_LOCALS;
     int32_t j, k, lane, together;
@@ -10033,9 +10013,9 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a, 
     gproji_take_triangle(a, a->m, a->zero_sum, size);
     for (lane = 0; lane < a->lanes; ++lane) {
         double *triangle = d->triangle + (int64_t)(a->first + lane) * d->triangle_size, heaviest = a->heaviest[lane];
-        double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / epsilon2) : 0;
+        double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / d->epsilon2) : 0;
         for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + lane];
-        if (share == 1 / epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * epsilon2);
+        if (share == 1 / d->epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * d->epsilon2);
         a->share[lane] = share * gproji_schur_share;
     }
     /* 3. Multipliers: columns of Q behind the first `count`, which span N. */
@@ -10087,8 +10067,7 @@ GPROJI_INTERNAL void gproji_schur_plain(const gproj_system *s, int32_t e) {
 
 /* Computes C, r and R for one chunk of elements, batch by batch. */
 GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    const gproj_system *s = assembly->system;
+    const gproj_system *s = (const gproj_system *)data;
     const gproji_schur *d = &s->schur;
     int32_t e = gproji_chunk_start(d->elements, d->chunks, chunk);
     int32_t end = gproji_chunk_start(d->elements, d->chunks, chunk + 1);
@@ -10113,13 +10092,14 @@ GPROJI_INTERNAL void gproji_schur_elements(void *data, int32_t chunk) {
         a.triangle = a.diagonal + a.count * GPROJI_LANES;
         a.q = a.triangle + a.count * a.count * GPROJI_LANES;
         a.c = a.q + a.m * GPROJI_SCHUR_TOGETHER * GPROJI_LANES;
-        gproji_schur_alike(s, &a, assembly->epsilon2);
+        gproji_schur_alike(s, &a);
     }
 }
 
 /* Computes K, b, W and U at a node. Without rows of its own D is a multiple of I, and b = 0. */
-GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size, double epsilon2) {
+GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t size) {
     const gproji_schur *d = &s->schur;
+    const double epsilon2 = d->epsilon2;
     double *root = d->root + d->root_start[v], *b = s->vector.step + s->nodes.first[v],
            *w = d->w.value + d->w.value_start[v];
     bool plain = d->own_start[v] == d->own_start[v + 1];
@@ -10127,7 +10107,6 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
     int64_t k;
     int32_t i, j, p;
     for (k = d->w.entry_start[v]; d->turns[v] && k < d->w.entry_start[v + 1]; ++k) share += d->share[d->w.entry[k]];
-    d->metric[v] = share;
     corner = plain ? 1 / sqrt(gproji_fmax(epsilon2 * share, DBL_MIN)) : epsilon2 * share;
     for (i = 0; i < size * size; ++i) root[i] = i % (size + 1) == 0 ? corner : 0;
     memset(b, 0, (size_t)size * sizeof *b);
@@ -10170,8 +10149,7 @@ GPROJI_INLINED void gproji_schur_node(const gproj_system *s, int32_t v, int32_t 
 
 /* Computes these at one chunk of nodes; local unknowns rest at 0. */
 GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
-    const gproji_assembly *assembly = (const gproji_assembly *)data;
-    const gproj_system *s = assembly->system;
+    const gproj_system *s = (const gproj_system *)data;
     int32_t v = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk);
     int32_t end = gproji_chunk_start(s->nodes.count, s->schur.chunks, chunk + 1);
     for (; v < end; ++v) {
@@ -10179,9 +10157,9 @@ GPROJI_INTERNAL void gproji_schur_nodes(void *data, int32_t chunk) {
         if (s->blocks.auxiliary[s->nodes.first[v]])
             memset(s->vector.step + s->nodes.first[v], 0, (size_t)size * sizeof *s->vector.step);
         else if (size == 3)
-            gproji_schur_node(s, v, 3, assembly->epsilon2);
+            gproji_schur_node(s, v, 3);
         else
-            gproji_schur_node(s, v, size, assembly->epsilon2);
+            gproji_schur_node(s, v, size);
     }
 }
 
@@ -10390,12 +10368,11 @@ GPROJI_INTERNAL void gproji_schur_follow(void *data, int32_t chunk) {
 /* Assembles matrix and right-hand sides for a step. */
 GPROJI_INTERNAL void gproji_schur_assemble(gproj_system *s, double epsilon) {
     gproji_schur *d = &s->schur;
-    gproji_assembly assembly;
-    assembly.system = s, assembly.epsilon2 = epsilon * epsilon;
+    d->epsilon2 = epsilon * epsilon;
     /* w g, without local unknowns; gproji_schur_node turns them into U. */
     s->wide.acting = gproji_wide_columns(s, (size_t)s->wide.kept);
-    gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, &assembly);
-    gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, &assembly);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_elements, s);
+    gproji_for(&s->host.parallel, d->chunks, gproji_schur_nodes, s);
     if (s->wide.acting > 0 || gproji_schur_has_own(s)) gproji_for(&s->host.parallel, d->chunks, gproji_schur_sides, s);
 }
 
@@ -10733,44 +10710,16 @@ GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task ta
     return largest;
 }
 
-/* The largest of some absolute values, in four parts, so that none has to wait for the one before. */
-typedef struct gproji_maximum {
-    double part[4];
-    int32_t odd[4]; /* numbers that are none, or infinite */
-} gproji_maximum;
-
-GPROJI_INLINE void gproji_maximum_see(gproji_maximum *m, int32_t k, double d) {
-    m->part[k] = d > m->part[k] ? d : m->part[k];
-    m->odd[k] += !(d <= DBL_MAX);
-}
-
-GPROJI_INTERNAL double gproji_maximum_value(const gproji_maximum *m) {
-    if (m->odd[0] + m->odd[1] + m->odd[2] + m->odd[3] > 0) return HUGE_VAL;
-    return gproji_fmax(gproji_fmax(m->part[0], m->part[1]), gproji_fmax(m->part[2], m->part[3]));
-}
-
 /* max |x| */
 GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
     gproji_pass *pass = (gproji_pass *)data;
     const gproj_system *s = pass->system;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    gproji_maximum m;
-    memset(&m, 0, sizeof m);
-    for (; v + 4 <= end; v += 4)
-        for (k = 0; k < 4; ++k) gproji_maximum_see(&m, k, fabs(s->x[v + k]));
-    for (; v < end; ++v) gproji_maximum_see(&m, 0, fabs(s->x[v]));
-    pass->largest[task] = gproji_maximum_value(&m);
-}
-
-/* saved = x */
-GPROJI_INTERNAL void gproji_save_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    gproj_system *s = pass->system;
     int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    if (v < end) memcpy(s->vector.saved + v, s->x + v, (size_t)(end - v) * sizeof *s->x);
-    pass->largest[task] = 0;
+    double largest = 0;
+    for (; v < end; ++v)
+        if (!(fabs(s->x[v]) <= largest)) largest = gproji_magnitude(s->x[v]);
+    pass->largest[task] = largest;
 }
 
 /* x = saved + t dx; the largest |t dx| */
@@ -10778,22 +10727,15 @@ GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
     gproji_pass *pass = (gproji_pass *)data;
     gproj_system *s = pass->system;
     const double *step = s->vector.step, *saved = s->vector.saved;
-    double *x = s->x, t = pass->t;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task), k;
+    double *x = s->x, t = pass->t, largest = 0;
+    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
     int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    gproji_maximum m;
-    memset(&m, 0, sizeof m);
-    for (; v + 4 <= end; v += 4)
-        for (k = 0; k < 4; ++k) {
-            double d = t * step[v + k];
-            gproji_maximum_see(&m, k, fabs(d));
-            x[v + k] = saved[v + k] + d;
-        }
     for (; v < end; ++v) {
-        gproji_maximum_see(&m, 0, fabs(t * step[v]));
-        x[v] = saved[v] + t * step[v];
+        double d = t * step[v];
+        x[v] = saved[v] + d;
+        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
     }
-    pass->largest[task] = gproji_maximum_value(&m);
+    pass->largest[task] = largest;
 }
 
 /* The caller's tolerance, or the residual that rounding allows at this x. */
@@ -10910,6 +10852,10 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
 
 /* x = saved + t dx; returns the largest |t dx|, infinite if it is not a number. */
 GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
+
+GPROJI_INTERNAL void gproji_save(gproj_system *s) {
+    if (s->variable_count) memcpy(s->vector.saved, s->x, (size_t)s->variable_count * sizeof *s->x);
+}
 
 GPROJI_INTERNAL void gproji_step_back(gproj_system *s) {
     if (s->compiled && s->variable_count) memcpy(s->x, s->vector.saved, (size_t)s->variable_count * sizeof *s->x);
@@ -11228,7 +11174,7 @@ GPROJI_INTERNAL bool gproji_recompile(gproji_loop *loop, bool anew) {
     if (loop->options.nearest && !gproji_start_multipliers(s)) gproji_fail_memory(&s->error);
     gproji_lap(loop, GPROJ_PHASE_ANALYSE);
     gproji_see_rows(loop);
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     return true;
 }
 
@@ -11330,7 +11276,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         epsilon = 0.3 * sqrt(gproji_fmax(0, loop->standing.merit - loop->standing.energy));
         epsilon = gproji_fmin(gproji_fmax(epsilon, loop->epsilon_least), gproji_epsilon_max);
     }
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     loop->iteration.factorisations = 0;
     loop->trust.failed = false;
     for (trial = 0; trial < GPROJI_TRIALS && s->error.code == GPROJ_OK; ++trial) {
@@ -11557,17 +11503,26 @@ static const double gproji_conflict_least = 1e-3; /* residual that is no slow en
 
 static const char gproji_more_iterations[] = "; allow more iterations, or ask for less";
 
-/* Writes why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
-GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g, char *more, size_t size) {
+/* Appends a clause to the verdict, in the format of gproji_format. */
+GPROJI_INTERNAL void gproji_tell(gproj_result *result, const char *format, ...) {
+    size_t length = strlen(result->message);
+    va_list list;
+    va_start(list, format);
+    gproji_format_list(result->message + length, sizeof result->message - length, format, list);
+    va_end(list);
+}
+
+/* Tells why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
+GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g) {
+    gproj_result *result = &loop->result;
     gproj_system *s = loop->system;
-    bool stalled = loop->result.outcome == GPROJ_STALLED;
+    bool stalled = result->outcome == GPROJ_STALLED;
     double epsilon = loop->options.epsilon > 0 ? loop->options.epsilon : gproji_epsilon_usual;
     double weight = g->weight * g->row[loop->standing.row].weight, largest = loop->tolerance, most = 0;
     int32_t second = -1, wish = -1, i, k;
     bool guided, tired, balanced;
-    more[0] = 0;
     loop->hopeful = false;
-    if (gproji_holds(loop) || (!stalled && loop->result.outcome != GPROJ_ITERATION_LIMIT)) return;
+    if (gproji_holds(loop) || (!stalled && result->outcome != GPROJ_ITERATION_LIMIT)) return;
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *other = &s->group[i];
         bool lasts = other->kind == GPROJ_WISH && gproji_group_counts(other) && !(other->schedule.decay < 1);
@@ -11578,34 +11533,30 @@ GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g, cha
         /* 2. The other group that must hold with the largest residual. */
         if (i != loop->standing.group && gproji_must_hold(other) && !(max <= largest)) largest = max, second = i;
     }
-    guided = wish >= 0 && !loop->options.nearest && loop->result.iterations > 0;
+    guided = wish >= 0 && !loop->options.nearest && result->iterations > 0;
     /* A limit met is no conflict, unless much is left long after the wishes and nothing changes any more. */
     tired = !stalled && !loop->options.nearest && s->progress.unguided >= GPROJI_BALANCE_ITERATIONS &&
             loop->standing.residual > gproji_conflict_least;
     balanced = (guided || tired) && gproji_constraints_balance(s);
     if (!(loop->standing.residual <= DBL_MAX))
-        gproji_format(more, size, "; its value is not a finite number: begin with smaller ones");
+        gproji_tell(result, "; its value is not a finite number: begin with smaller ones");
     else if (loop->options.tolerance <= 0 && gproji_noise_above(loop) <= DBL_MAX)
-        gproji_format(more, size,
-                      "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
+        gproji_tell(result, "; rounding of such large numbers allows no better: use a larger unit, or set a tolerance");
     else if (weight < epsilon)
-        gproji_format(more, size,
-                      "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1", weight,
-                      g->name, epsilon);
+        gproji_tell(result, "; the weight %g of '%s' is too small beside the regularisation %g: choose one near 1",
+                    weight, g->name, epsilon);
     else if (guided && !balanced)
-        gproji_format(more, size,
-                      "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
-                      s->group[wish].name);
+        gproji_tell(result, "; as long as the wish '%s' acts they cannot hold exactly: let it fade, or use nearest",
+                    s->group[wish].name);
     else if (!stalled && !balanced)
         loop->hopeful = true;
     else if (loop->options.tolerance <= 0 && loop->standing.residual <= gproji_almost)
-        gproji_format(more, size, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
-                      pow(10.0, ceil(log10(loop->standing.residual))));
+        gproji_tell(result, "; coordinates of nine digits leave as much: a tolerance of %g would accept it",
+                    pow(10.0, ceil(log10(loop->standing.residual))));
     else if (second >= 0)
-        gproji_format(more, size, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
+        gproji_tell(result, "; '%s' and '%s' work against each other", g->name, s->group[second].name);
     else
-        gproji_format(more, size, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less",
-                      g->name);
+        gproji_tell(result, "; '%s' is stuck at a minimum of its residual: begin elsewhere, or ask for less", g->name);
 }
 
 /* Writes the verdict in a sentence: outcome, worst row, obstacle, advice; or how near the nearest is. */
@@ -11615,36 +11566,33 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     const gproji_group *g = standing->group >= 0 ? &loop->system->group[standing->group] : NULL;
     int32_t iterations = loop->earlier + r->iterations;
     const char *plural = iterations == 1 ? "" : "s", *ending = "";
-    char more[GPROJ_MESSAGE_SIZE / 2], element[GPROJ_NAME_SIZE], figure[64];
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
     r->worst_group = standing->group;
     r->worst_element = g ? g->row[standing->row].element : -1;
-    gproji_format(figure, sizeof figure, "projected gradient of the wishes %g", r->optimality);
     if (g && loop->options.nearest && gproji_holds(loop)) {
         if (r->outcome == GPROJ_CONVERGED) ending = ", at a minimum of the wishes";
         if (r->outcome == GPROJ_ITERATION_LIMIT) ending = ", but more iterations would serve the wishes better";
         if (r->outcome == GPROJ_STALLED) ending = ", and no step serves the wishes better";
         if (r->outcome == GPROJ_CANCELLED) ending = ", cancelled by the caller";
         if (r->outcome == GPROJ_TIME_OUT) ending = ", but the time budget ran out before a minimum of the wishes";
-        gproji_format(r->message, sizeof r->message, "%s%s: %d iteration%s, largest residual %g (%s), %s",
-                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name, figure);
+        gproji_format(r->message, sizeof r->message,
+                      "%s%s: %d iteration%s, largest residual %g (%s), projected gradient of the wishes %g",
+                      gproji_outcome_string(GPROJ_CONVERGED), ending, iterations, plural, r->residual, g->name,
+                      r->optimality);
         return;
     }
     if (g) {
-        gproji_advise(loop, g, more, sizeof more);
-        element[0] = 0;
-        if (g->place != GPROJ_PLACE_NONE)
-            gproji_format(element, sizeof element, ", %s %d", gproji_place_word(g->place), r->worst_element);
-        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s%s)%s",
-                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name, element, more);
+        gproji_format(r->message, sizeof r->message, "%s: %d iteration%s, largest residual %g (%s",
+                      gproji_outcome_string(r->outcome), iterations, plural, r->residual, g->name);
+        if (g->place != GPROJ_PLACE_NONE) gproji_tell(r, ", %s %d", gproji_place_word(g->place), r->worst_element);
+        gproji_tell(r, ")");
+        gproji_advise(loop, g);
     } else {
         gproji_format(r->message, sizeof r->message,
                       "there is nothing that must hold; %d iteration%s towards the wishes", iterations, plural);
     }
-    if (!loop->options.nearest) return;
-    gproji_append(r->message, sizeof r->message, strlen(r->message), "; ", 2);
-    gproji_append(r->message, sizeof r->message, strlen(r->message), figure, strlen(figure));
+    if (loop->options.nearest) gproji_tell(r, "; projected gradient of the wishes %g", r->optimality);
 }
 
 /* A result that carries an error's sentence. */
@@ -11958,7 +11906,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
     bool anew = flat && loop->slides.shift > gproji_nearest_flat, calm;
     double shift = !curved || anew ? 0 : flat ? gproji_nearest_flat : loop->slides.shift;
     int32_t i, r;
-    gproji_pass_over(s, 0, gproji_save_task);
+    gproji_save(s);
     /* Rows that depend on each other let multipliers grow without need, which may hide a minimum: these begin anew. */
     for (i = 0; anew && i < s->group_count; ++i)
         for (r = 0; s->group[i].kind == GPROJ_CONSTRAINT && r < s->group[i].row_count; ++r)
@@ -12228,46 +12176,31 @@ GPROJ_API gproj_result gproj_system_solve(gproj_system *s, int32_t iterations, c
     gproji_loop loop;
     if (!gproji_begin_loop(&loop, s, 1, false, iterations, options)) return loop.result;
     gproji_run(&loop, -1);
-    if (loop.hopeful)
-        gproji_append(loop.result.message, GPROJ_MESSAGE_SIZE, strlen(loop.result.message), gproji_more_iterations,
-                      sizeof gproji_more_iterations - 1);
+    if (loop.hopeful) gproji_tell(&loop.result, gproji_more_iterations);
     s->changed = true; /* for the solve of a form that goes on after this one, which may have taken its multipliers */
     return loop.result;
 }
 
 /* -- gradients, checked by differences -- */
 
-/* The v-th of the variables that a row names, two a term; -1 for the second one of a linear term. */
-GPROJI_INLINE int32_t gproji_named_variable(const gproji_group *g, int32_t r, int64_t v) {
-    return gproji_variable_of(g, &g->row[r], v % 2 ? g->term[v / 2].j : g->term[v / 2].i);
-}
-
 /* The largest difference of a row's gradient and central differences, relative to its largest entry and at least 1.
    `gradient`: work, one number a variable, zeros on entry and on exit. */
 GPROJI_INTERNAL double gproji_check_row(gproj_system *s, const gproji_group *g, int32_t r, double *gradient) {
-    int64_t first = 2 * (int64_t)g->row[r].term, end = first + 2 * (int64_t)g->row[r].terms, k;
+    const int32_t *variable = g->local.variable + g->row[r].local, *end = g->local.variable + g->row[r + 1].local, *v;
     double size = 1, worst = 0;
     gproji_row_gradient(g, r, s->x, gradient);
-    for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, r, k);
-        if (v >= 0) size = gproji_fmax(size, fabs(gradient[v]));
-    }
-    for (k = first; k < end; ++k) {
-        int32_t v = gproji_named_variable(g, r, k);
-        double x, h, up, down, difference;
-        if (v < 0) continue;
-        x = s->x[v];
-        h = 1e-5 * gproji_fmax(1, fabs(x));
-        s->x[v] = x + h;
+    for (v = variable; v < end; ++v) size = gproji_fmax(size, fabs(gradient[*v]));
+    for (v = variable; v < end; ++v) {
+        double x = s->x[*v], h = 1e-5 * gproji_fmax(1, fabs(x)), up, down, difference;
+        s->x[*v] = x + h;
         up = gproji_row_value(g, r, s->x);
-        s->x[v] = x - h;
+        s->x[*v] = x - h;
         down = gproji_row_value(g, r, s->x);
-        s->x[v] = x;
-        difference = fabs((up - down) / (2 * h) - gradient[v]) / size;
+        s->x[*v] = x;
+        difference = fabs((up - down) / (2 * h) - gradient[*v]) / size;
         worst = difference <= DBL_MAX ? gproji_fmax(worst, difference) : HUGE_VAL;
     }
-    for (k = first; k < end; ++k)
-        if (gproji_named_variable(g, r, k) >= 0) gradient[gproji_named_variable(g, r, k)] = 0;
+    for (v = variable; v < end; ++v) gradient[*v] = 0;
     return worst;
 }
 
@@ -12643,12 +12576,6 @@ typedef struct gproji_mesh_work {
     int32_t *mark;          /* vertex_count: scratch that each step sets anew */
     int32_t *slot;          /* vertex_count + 1: counters when sorting, then edges by larger vertex, then loops */
 } gproji_mesh_work;
-
-/* -1, which functions that return a number return after an error. */
-GPROJI_INLINE int32_t gproji_none(gproj_code code) {
-    (void)code;
-    return -1;
-}
 
 GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
     int32_t i;
@@ -19072,7 +18999,7 @@ typedef struct gproji_solve {
     bool finished; /* it has ended: the loop's result is the verdict */
     bool futile;   /* and something that it was asked for can never hold */
     gproji_loop loop;
-    gproji_structure structure; /* of the system at the beginning */
+    int64_t structure; /* of the system at the beginning: gproji_structure_of */
 } gproji_solve;
 
 /* Arrays that builders and refreshes fill in and use at once. */
@@ -21356,12 +21283,11 @@ GPROJI_INLINE bool gproji_areas_weigh(const gproj_loads *loads) { return loads->
    snow (0, 0, 1) with the sign that a_z has. Returns it. */
 GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_loads *loads, const double *x, int32_t face,
                                         double h[3]) {
-    static const double up[3] = {0, 0, 1};
     double area[3], direction[3];
     int32_t k;
     gproji_area_vector(mesh, x, face, area);
     gproji_copy3(area, direction);
-    gproji_normalise3(direction, up);
+    gproji_normalise3(direction, gproji_up);
     for (k = 0; k < 3; ++k) h[k] = loads->area_load * direction[k];
     h[2] += area[2] < 0 ? -loads->snow : loads->snow;
     return gproji_dot3(h, area);
@@ -21411,7 +21337,6 @@ GPROJI_INLINE void gproji_add_weight_terms(const int32_t *vertex, gproj_term *te
    that without weight. */
 GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const double *x, double per_length,
                                                int32_t vertex, double constant) {
-    static const double none[3] = {0, 0, 0};
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     const int32_t *list = s->load_vertex + s->load_start[vertex];
@@ -21427,7 +21352,7 @@ GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const dou
         /* An edge puts w'(a - b) / 2 on each end, w along it: linear, without a constant. */
         if (half != 0) {
             gproji_sub3(x + 3 * (size_t)vertex, x + 3 * (size_t)other, d);
-            gproji_normalise3(d, none);
+            gproji_normalise3(d, gproji_zero);
             gproji_add_weight_terms(list, term, vertex, -half, d);
             gproji_add_weight_terms(list, term, other, half, d);
         }
@@ -21558,56 +21483,45 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
 /* -- making the statics of a form -- */
 
 /* Refuses a second equilibrium, supports that are no list, loads that are no numbers or that nothing carries. */
-GPROJI_INTERNAL bool gproji_equilibrium_is_valid(gproj_form *form, const gproj_loads *loads,
-                                                 const gproj_supports *supports) {
+GPROJI_INTERNAL gproj_code gproji_check_equilibrium(gproj_form *form, const gproj_loads *loads,
+                                                    const gproj_supports *supports) {
     int32_t e, v, k, count = supports ? supports->count : 0;
-    if (form->statics) {
-        gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
-                    "the form has its equilibrium already: set its schedule, or make a new form");
-        return false;
-    }
-    if (!supports || count < 0 || (count > 0 && !supports->vertex)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "equilibrium: the supports are missing, or their list is");
-        return false;
-    }
-    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex)) return false;
+    if (form->statics)
+        return gproji_fail(&form->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
+                           "the form has its equilibrium already: set its schedule, or make a new form");
+    if (!supports || count < 0 || (count > 0 && !supports->vertex))
+        return gproji_refuse(&form->error, "equilibrium: the supports are missing, or their list is");
+    if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex))
+        return form->error.code;
     for (v = 0; supports->slides && v < count; ++v) {
         if (supports->slides[v] <= GPROJI_AXES) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
-                    "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
-                    (int32_t)supports->slides[v]);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
+                           "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
+                           (int32_t)supports->slides[v]);
     }
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
-        !gproji_is_finite(loads->snow)) {
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                    "equilibrium: there are no loads, or density, area load or snow is not a finite number");
-        return false;
-    }
+        !gproji_is_finite(loads->snow))
+        return gproji_refuse(&form->error,
+                             "equilibrium: there are no loads, or density, area load or snow is not a finite number");
     for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) {
         if (gproji_is_finite(loads->edge_density[e])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                    "equilibrium: the density of edge %d is not a finite number", e);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                           "equilibrium: the density of edge %d is not a finite number", e);
     }
     for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v) {
         if (gproji_is_finite(loads->point_load[v])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
-                    "equilibrium: the load on vertex %d is not a finite number", v / 3);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
+                           "equilibrium: the load on vertex %d is not a finite number", v / 3);
     }
     for (v = 0; loads->point_load && v < form->mesh->vertex_count; ++v) {
         const double *load = loads->point_load + 3 * (size_t)v;
         if (form->mesh->vertex_halfedge[v] >= 0 || (load[0] == 0 && load[1] == 0 && load[2] == 0)) continue;
-        for (k = 0; k < count && supports->vertex[k] != v; ++k) {
-        }
+        for (k = 0; k < count && supports->vertex[k] != v; ++k) continue;
         if (k < count) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
-                    "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
-        return false;
+        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
+                           "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
     }
-    return true;
+    return GPROJ_OK;
 }
 
 /* Makes form->statics; false without memory. */
@@ -21665,7 +21579,7 @@ GPROJ_API int32_t gproj_add_equilibrium(gproj_form *form, const gproj_loads *loa
     size_t count, spokes, edge_terms, most = 0;
     gproj_term *term;
     int32_t *spoke, v;
-    if (!gproji_form_ready(form) || !gproji_equilibrium_is_valid(form, loads, supports)) return -1;
+    if (!gproji_form_ready(form) || gproji_check_equilibrium(form, loads, supports)) return -1;
     if (!gproji_create_statics(form, loads, supports)) gproji_fail_memory(&form->error);
     if (!gproji_form_ready(form)) return -1;
     s = form->statics;
@@ -21720,7 +21634,7 @@ static const gproji_rule gproji_compression_rule = {"compression",   GPROJ_BOUND
 static const gproji_rule gproji_tension_rule = {"tension",       GPROJ_BOUND, GPROJ_PLACE_EDGE,
                                                 GPROJI_OWN_NONE, GPROJI_LAZY, NULL};
 
-/* Rows sign y >= 0, y the variable of an edge's density. */
+/* Adds rows sign y for edges with a force, y the variable of the density: >= 0 in bounds, else = 0. */
 GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rule, double sign, int32_t count,
                                         const int32_t *edges, double weight) {
     int32_t group, k;
@@ -21731,7 +21645,7 @@ GPROJI_INTERNAL int32_t gproji_add_sign(gproj_form *form, const gproji_rule *rul
         int32_t edge = edges ? edges[k] : k;
         gproj_term term;
         gproji_set_term(&term, form->statics->force[edge], -1, sign);
-        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, edge);
+        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, rule->place == GPROJ_PLACE_EDGE ? edge : -1);
     }
     return gproji_built(form, group);
 }
@@ -21756,13 +21670,12 @@ GPROJI_INTERNAL void gproji_set_force_terms(const gproj_form *form, int32_t edge
 }
 
 GPROJI_INTERNAL void gproji_refresh_force_terms(const gproj_form *form, int32_t edge, double s, gproj_term *term) {
-    static const double none[3] = {0, 0, 0};
     const double *x = gproj_system_values(form->system);
     const int32_t *end = form->mesh->origin + 2 * (size_t)edge;
     double u[3];
     int32_t k;
     gproji_sub3(x + 3 * (size_t)end[0], x + 3 * (size_t)end[1], u);
-    gproji_normalise3(u, none);
+    gproji_normalise3(u, gproji_zero);
     for (k = 0; k < 3; ++k) term[k].a = s * u[k], term[3 + k].a = -s * u[k];
 }
 
@@ -21801,14 +21714,12 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
                     edges ? edges[k] : k, sections[k]);
         return -1;
     }
-    part = gproji_new_part(form, &gproji_stress_rule, 2 * count);
+    part = gproji_open_part(form, &gproji_stress_rule, 2 * count, weight);
     if (!part) return -1;
-    part->count = 0;
     part->given[0] = min;
     part->given[1] = max;
     part->factor = (double *)gproji_part_take(part, part->capacity, sizeof *part->factor);
     if (!part->factor) return -1;
-    gproji_add_group(part, weight);
     for (side = 0; side < 2; ++side) {
         for (k = 0; k < count && gproji_form_ready(form); ++k) {
             int32_t edge = edges ? edges[k] : k;
@@ -21846,10 +21757,8 @@ GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     int32_t f, k;
     if (!gproji_has_statics(form, "force fairness")) return -1;
     mesh = form->mesh;
-    part = gproji_new_part(form, &gproji_force_fairness_rule, 4 * mesh->face_count);
+    part = gproji_open_part(form, &gproji_force_fairness_rule, 4 * mesh->face_count, weight);
     if (!part) return -1;
-    part->count = 0;
-    gproji_add_group(part, weight);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t h = mesh->face_halfedge[f];
         for (k = 0; mesh->face_degree[f] == 4 && k < 2; ++k, h = mesh->next[h]) {
@@ -21926,7 +21835,7 @@ GPROJI_INTERNAL bool gproji_take_balance(gproj_form *form, gproj_error *error, g
     p->lower = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->lower);
     p->upper = (double *)gproji_pool_take(&p->pool, edges, sizeof *p->upper);
     p->force = (double *)gproji_pool_take_zeroed(&p->pool, edges, sizeof *p->force);
-    if (p->start && p->row && p->value && p->load && p->b && p->lower && p->upper && p->force) return true;
+    if (!p->pool.failed) return true;
     gproji_pool_give_all(&p->pool);
     gproji_fail_memory(error);
     return false;
@@ -21950,9 +21859,8 @@ GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units unit
     gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
-    gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                "equilibrium: the loads are too large, their squares overflow");
-    return -1;
+    return gproji_none(gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
+                                   "equilibrium: the loads are too large, their squares overflow"));
 }
 
 /* Finds p->force, the best forces y for the loads p->load at x: those with the least residual in (1), damped towards
@@ -22194,46 +22102,6 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
 static const gproji_rule gproji_force_guidance_rule = {"force guidance",  GPROJ_WISH,   GPROJ_PLACE_EDGE,
                                                        GPROJI_OWN_FORCES, GPROJI_GUIDE, NULL};
 
-/* Adds the group that draws the forces to their start. */
-GPROJI_INTERNAL void gproji_add_force_guidance(gproj_form *form) {
-    gproji_statics *s = form->statics;
-    gproj_term term;
-    int32_t group = gproji_new_group(form, &gproji_force_guidance_rule, 0), e;
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
-        gproji_set_term(&term, s->force[e], -1, 1);
-        if (term.i >= 0) gproji_add_row(form->system, group, 1, &term, 0, e);
-    }
-}
-
-/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
-GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
-    gproji_statics *s = form->statics;
-    gproj_schedule schedule = wishes ? gproj_guide(0.3) : gproj_fade(1, 5);
-    gproji_balance p;
-    bool guided = false;
-    const double *x;
-    int32_t guidance, e, row = 0;
-    if (!s || !gproji_is_on(form, s->group)) return;
-    s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
-        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
-           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
-           solve for the nearest mesh forces are free. */
-        guided = gproji_start_forces(form, nearest, &p) && !nearest;
-        gproji_pool_give_all(&p.pool);
-        s->started = gproji_form_ready(form);
-    }
-    if (guided && !gproji_own_part(form, GPROJI_OWN_FORCES)) gproji_add_force_guidance(form);
-    guidance = gproji_own_group(form, GPROJI_OWN_FORCES);
-    if (guidance < 0) return;
-    if (!wishes) schedule.decay = 0.3;
-    if (!guided) schedule.weight = 0;
-    gproj_system_set_schedule(form->system, guidance, schedule);
-    x = gproj_system_values(form->system);
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e)
-        if (s->force[e] >= 0) gproj_system_set_row(form->system, guidance, row++, NULL, -x[s->force[e]]);
-}
-
 /* -- forces for the caller -- */
 
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error) {
@@ -22413,10 +22281,9 @@ GPROJI_INTERNAL double *gproji_guarded_areas(const gproji_part *part) { return (
 
 /* The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
-    static const double none[3] = {0, 0, 0};
     int32_t normal = part->form->normal[part->element[index]];
     gproji_copy3(normal >= 0 ? x + normal : gproji_guarded_areas(part) + 3 * (size_t)index, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* Linearises the rows with the normals at x. Faces that had no area are let go. */
@@ -22503,18 +22370,10 @@ GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
     return s && gproji_is_on(form, s->group) && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
 }
 
-/* Sets the guard for a solve in which wishes guide until iteration `guided`; 0: none do, and it guards the first few
-   iterations. */
-GPROJI_INTERNAL void gproji_set_guard(gproj_form *form, int32_t guided, bool skip) {
-    gproji_part *part;
+/* Notes the areas that the guarded faces have when a solve begins. */
+GPROJI_INTERNAL void gproji_begin_guard(const gproji_part *part) {
+    const gproj_form *form = part->form;
     int32_t i;
-    bool wanted = !skip && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    if (wanted && !gproji_own_part(form, GPROJI_OWN_GUARD)) gproji_add_guard(form);
-    part = gproji_own_part(form, GPROJI_OWN_GUARD);
-    if (!part || !gproji_form_ready(form)) return;
-    gproj_system_set_schedule(
-        form->system, part->group,
-        gproj_fade(wanted ? gproji_guard_weight : 0, gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; i < part->count; ++i)
         gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
                            gproji_guarded_areas(part) + 3 * (size_t)i);
@@ -22605,12 +22464,11 @@ GPROJI_INTERNAL void gproji_corner_area(const gproj_mesh *mesh, const double *x,
 /* The unit normal of a face from its variables at x; for a face without them, from its vectorial area at `frozen`. */
 GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *x, const double *frozen, int32_t face,
                                           double out[3]) {
-    static const double none[3] = {0, 0, 0};
     if (form->normal[face] >= 0)
         gproji_copy3(x + form->normal[face], out);
     else
         gproji_area_vector(form->mesh, frozen, face, out);
-    gproji_normalise3(out, none);
+    gproji_normalise3(out, gproji_zero);
 }
 
 /* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as
@@ -22896,25 +22754,17 @@ GPROJI_INTERNAL void gproji_add_corners(gproj_form *form) {
     gproji_add_group(part, 0);
 }
 
-/* Sets the safeguards, if asked for and of use, for a solve that begins: no corner acts yet. */
-GPROJI_INTERNAL void gproji_set_corners(gproj_form *form, bool asked) {
-    bool wanted = asked && (gproji_is_on(form, form->planarity) || gproji_carries(form));
-    const gproj_mesh *mesh = form->mesh;
-    const double *x;
-    const gproji_group *g;
-    gproji_corners *corners;
-    gproji_part *part;
+/* Begins a solve, in which no corner acts yet: notes the sizes that corners and edges have, if they are to be kept. */
+GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
+    gproj_system *s = part->form->system;
+    const gproj_mesh *mesh = part->form->mesh;
+    const gproji_group *g = gproji_group_at(s, part->group);
+    const double *x = gproj_system_values(s);
+    gproji_corners *corners = gproji_corners_of(part);
+    bool wanted = gproji_is_on(part->form, part->group);
     int32_t r, f, h, c, e;
-    if (wanted && !gproji_own_part(form, GPROJI_OWN_CORNERS)) gproji_add_corners(form);
-    part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    if (!part || !gproji_form_ready(form)) return;
-    corners = gproji_corners_of(part);
-    gproj_system_set_schedule(form->system, part->group, gproj_keep(wanted ? gproji_corner_weight : 0));
     corners->rounds = 0;
-    g = gproji_group_at(form->system, part->group);
-    for (r = 0; r < g->row_count; ++r) gproji_set_row(form->system, part->group, r, 0, g->row[r].constant);
-    x = gproj_system_values(form->system);
-    /* The sizes that corners and edges have now. */
+    for (r = 0; r < g->row_count; ++r) gproji_set_row(s, part->group, r, 0, g->row[r].constant);
     for (f = 0; wanted && f < mesh->face_count; ++f) {
         double area[3], *axis = corners->axis + 3 * (size_t)f;
         gproji_unit_normal(mesh, x, f, axis);
@@ -22950,9 +22800,7 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     bool up = gproji_rule_is_on(form, &gproji_compression_rule), down = gproji_rule_is_on(form, &gproji_tension_rule);
     const char *kind = up && down ? "" : up ? "compression-only " : down ? "tension-only " : "";
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
-    size_t length = strlen(result->message);
     double phi[3] = {0, 0, 0};
-    char others[48], most[64];
     int32_t vertex[3] = {-1, -1, -1}, r, k;
     const gproji_group *g;
     gproj_forces forces;
@@ -22970,27 +22818,23 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
         for (; k > 0 && size > phi[k - 1]; --k) phi[k] = phi[k - 1], vertex[k] = vertex[k - 1];
         phi[k] = size, vertex[k] = v;
     }
-    gproji_format(others, sizeof others, "vertex ");
-    if (vertex[2] >= 0) gproji_format(others, sizeof others, "vertices %d, %d, ", vertex[2], vertex[1]);
-    most[0] = 0;
-    if (forces.residual_vertex >= 0)
-        gproji_format(most, sizeof most, " by up to %g of the largest load", forces.residual);
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; no %sequilibrium%s was found near this shape: %s%d out of balance%s", kind, planar, others,
-                  vertex[0], most);
+    gproji_tell(result, "; no %sequilibrium%s was found near this shape: ", kind, planar);
+    if (vertex[2] >= 0)
+        gproji_tell(result, "vertices %d, %d, %d out of balance", vertex[2], vertex[1], vertex[0]);
+    else
+        gproji_tell(result, "vertex %d out of balance", vertex[0]);
+    if (forces.residual_vertex >= 0) gproji_tell(result, " by up to %g of the largest load", forces.residual);
     return true;
 }
 
 /* Says that a hanging shape was asked to stand, or the opposite, and has been turned over for that. */
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
-    size_t length = strlen(result->message);
     bool stands = gproji_rule_is_on(form, &gproji_compression_rule);
     if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
-                  stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
-                  stands ? "compression" : "tension", s->lost[0]);
+    gproji_tell(result, "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
+                stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
+                stands ? "compression" : "tension", s->lost[0]);
 }
 
 /* -- demands that can never hold -- */
@@ -23038,16 +22882,15 @@ enum {
 /* Writes the unit normal of the area of a fan of points about the origin. False if the area is small beside the
    distances: rounding would turn the normal of points along a line. */
 GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], double normal[3]) {
-    static const double none[3] = {0, 0, 0};
     double squares = 0, area[3];
     int32_t k;
-    gproji_copy3(none, normal);
+    gproji_copy3(gproji_zero, normal);
     for (k = 1; k < count; ++k) {
         gproji_cross3(offset[k - 1], offset[k], area);
         gproji_add_scaled3(1, area, normal);
         squares += gproji_dot3(offset[k], offset[k]);
     }
-    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, none);
+    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
 }
 
 /* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
@@ -23230,7 +23073,6 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
     const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
-    size_t length = strlen(result->message);
     int32_t f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
     double off = 0;
     if (statics) gproj_get_loads(form, statics->work, NULL);
@@ -23244,20 +23086,20 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
         if (loaded >= 0) loaded_face = f;
     }
     if (vertex >= 0 && gproji_stays(s, vertex))
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
-                      "mean edges off it%s: let some of the held vertices go",
-                      face, vertex, off, planes > 1 ? ", and others likewise" : "");
+        gproji_tell(result,
+                    "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
+                    "mean edges off it%s: let some of the held vertices go",
+                    face, vertex, off, planes > 1 ? ", and others likewise" : "");
     else if (vertex >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; flat faces that keep their corners share one plane from face %d on, but the side along which "
-                      "vertex %d glides meets it nowhere between held vertices%s: let some of these go",
-                      face, vertex, planes > 1 ? ", and others likewise" : "");
+        gproji_tell(result,
+                    "; flat faces that keep their corners share one plane from face %d on, but the side along which "
+                    "vertex %d glides meets it nowhere between held vertices%s: let some of these go",
+                    face, vertex, planes > 1 ? ", and others likewise" : "");
     else if (loaded >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
-                      "carry its load: let some of the held vertices go",
-                      loaded_face, loaded);
+        gproji_tell(result,
+                    "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
+                    "carry its load: let some of the held vertices go",
+                    loaded_face, loaded);
     return vertex >= 0 || loaded >= 0;
 }
 
@@ -23288,7 +23130,6 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     const gproj_form *form = s->form;
     const gproj_mesh *mesh = form->mesh;
     const gproji_part *part;
-    size_t length = strlen(result->message);
     double most = noticeable;
     int32_t *colour = s->looked, vertex = -1, count = 0, faces, v, i;
     /* 1. Is every face, all of which are to be flat, to be circular? */
@@ -23335,12 +23176,11 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
     }
     if (vertex < 0) return;
     faces = gproj_mesh_valence(mesh, vertex) - gproj_mesh_is_boundary_vertex(mesh, vertex);
-    gproji_format(
-        result->message + length, sizeof result->message - length,
-        "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
-        "but in a smooth mesh with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): "
-        "let corners or other vertices of the boundary go, or insert a strip of faces",
-        floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
+    gproji_tell(result,
+                "; circular faces need the same sum of angles around the vertices of either colour of a chessboard, "
+                "but in a smooth mesh with this boundary the sums differ by %g degrees, most by vertex %d (%d face%s): "
+                "let corners or other vertices of the boundary go, or insert a strip of faces",
+                floor(most * 180 / GPROJI_PI + 0.5), vertex, faces, faces == 1 ? "" : "s");
 }
 
 /* Asymptotic directions. The edges of flat quads follow conjugate directions of their surface: edges bend, and faces do
@@ -23375,7 +23215,6 @@ GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, i
 /* Says that the edges follow asymptotic directions, if they do nearly everywhere. Returns whether they do. */
 GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
-    size_t length = strlen(result->message);
     int32_t inner = 0, twisted = 0, v;
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
@@ -23389,9 +23228,8 @@ GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result
         twisted += quads && gproj_mesh_valence(mesh, v) == 4 && gproji_twists_at(mesh, form->original, v);
     }
     if (!(twisted > 0.9 * inner)) return false;
-    gproji_format(result->message + length, sizeof result->message - length,
-                  "; the edges follow asymptotic directions of a saddle-shaped surface, near which flat faces "
-                  "collapse: take the mesh along its diagonals (gproj_mesh_diagonals, --diagonals)");
+    gproji_tell(result, "; the edges follow asymptotic directions of a saddle-shaped surface, near which flat faces "
+                        "collapse: take the mesh along its diagonals (gproj_mesh_diagonals, --diagonals)");
     return true;
 }
 
@@ -23400,7 +23238,6 @@ GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result
    Returns true in the first case alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    size_t length = strlen(result->message);
     double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
     int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
     int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
@@ -23418,14 +23255,13 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         if (bend > worst) worst = bend, face = f, corners = count;
     }
     if (bent > 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; face %d cannot become flat, because %d of its vertices are held, %g mean edges off a plane%s: "
-                      "let one of them go%s",
-                      face, corners, worst, bent > 1 ? ", and others likewise" : "",
-                      worst < 1e-6 ? ", or set a larger tolerance" : "");
+        gproji_tell(result,
+                    "; face %d cannot become flat, because %d of its vertices are held, %g mean edges off a plane%s: "
+                    "let one of them go%s",
+                    face, corners, worst, bent > 1 ? ", and others likewise" : "",
+                    worst < 1e-6 ? ", or set a larger tolerance" : "");
     else if (all == vertices)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; all vertices are fixed: let some of them go");
+        gproji_tell(result, "; all vertices are fixed: let some of them go");
     else if (whole) {
         gproji_spread spread;
         memset(&spread, 0, sizeof spread);
@@ -23505,14 +23341,13 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
 GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *result) {
     int32_t floating = gproji_find_floating(form), edge = gproji_find_contradiction(form), g;
     gproj_group_info most;
-    size_t length = strlen(result->message), size = sizeof result->message - length;
     if (floating >= 0) {
-        gproji_format(result->message + length, size,
-                      "; the part of the mesh with vertex %d has no support that could carry its loads", floating);
+        gproji_tell(result, "; the part of the mesh with vertex %d has no support that could carry its loads",
+                    floating);
     } else if (edge >= 0) {
-        gproji_format(
-            result->message + length, size,
-            "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict", edge);
+        gproji_tell(result,
+                    "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict",
+                    edge);
     } else {
         memset(&most, 0, sizeof most);
         most.max = 1e-6;
@@ -23523,8 +23358,8 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
                 most = info;
         }
         if (most.max > 1e-6)
-            gproji_format(result->message + length, size, "; vertex %d holds back most ('%s'): let it go, or glide",
-                          most.worst_element, most.name);
+            gproji_tell(result, "; vertex %d holds back most ('%s'): let it go, or glide", most.worst_element,
+                        most.name);
     }
 }
 
@@ -23540,17 +23375,10 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     bool follow; /* loads that vanish with the shape */
     int32_t r, e;
     if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
-    load = (double *)gproji_take(&form->heap, count, sizeof *load);
-    if (!load) {
-        gproji_fail_memory(&form->error);
-        *result = gproji_failed_result(gproj_form_error(form));
-        return;
-    }
     /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
-    loads = &s->loads;
+    loads = &s->loads, load = s->work;
     gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
-    gproji_give(&form->heap, load, count, sizeof *load);
     g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
         if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
@@ -23608,10 +23436,9 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         {"face collapsed", "faces collapsed"},     {"edge became a spike", "edges became spikes"}};
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(form->system);
-    size_t size = sizeof result->message, length = strlen(result->message);
     double shrunk = gproji_mean_edge(mesh, x) / gproji_mean_edge(mesh, form->original);
     const char *between = "";
-    char *text = result->message;
+    size_t length;
     gproji_damages d;
     int32_t kind, r;
     bool known, plain = !form->solve.loop.options.smooth && !form->solve.loop.options.nearest;
@@ -23624,13 +23451,12 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     if (result->outcome != GPROJ_CONVERGED &&
         !(form->solve.loop.options.nearest && result->residual <= result->tolerance)) {
         if (result->spoiled.total > 0) /* there is worse to tell */
-            gproji_format(text + length, size - length, "; %d faces or edges are spoiled as well%s",
-                          result->spoiled.total, plain ? ": a smooth solve may do better" : "");
+            gproji_tell(result, "; %d faces or edges are spoiled as well%s", result->spoiled.total,
+                        plain ? ": a smooth solve may do better" : "");
         return;
     }
     if (shrunk < 0.2)
-        gproji_format(text + length, size - length,
-                      "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
+        gproji_tell(result, "; but the mesh has shrunk to %g of its size: fix vertices or add a reference", shrunk);
     if (shrunk < 0.2 || result->spoiled.total == 0) return;
     /* Vertices that glide are led into the corners that stay: the first thing to try. */
     for (part = form->part; part && !plain; part = part->next) {
@@ -23642,36 +23468,31 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     }
     /* The reason, if it is known; all kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge
        ..."; advice, if there is no reason. */
+    length = strlen(result->message);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
-    known = strlen(text) > length;
-    length = strlen(text);
-    length = gproji_append(text, size, length, "; but the mesh is spoiled: ", 27);
+    known = result->message[length] != 0;
+    gproji_tell(result, "; but the mesh is spoiled: ");
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
         int32_t count = d.count[kind], at = d.first[kind];
         if (count == 0) continue;
-        gproji_format(text + length, size - length, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
-                      count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
-        length = strlen(text);
+        gproji_tell(result, "%s%d %s (%s%s %d", between, count, words[kind][count != 1],
+                    count == 1 ? "" : "first: ", gproji_place_word(gproji_damage_place(kind)), at);
         if (gproji_damage_place(kind) == GPROJ_PLACE_EDGE)
-            gproji_format(text + length, size - length, ", vertices %d and %d)", mesh->origin[2 * at],
-                          mesh->origin[2 * at + 1]);
-        else
-            gproji_append(text, size, length, ")", 1);
-        length = strlen(text);
+            gproji_tell(result, ", vertices %d and %d", mesh->origin[2 * at], mesh->origin[2 * at + 1]);
+        gproji_tell(result, ")");
         between = ", ";
     }
     if (!known && form->solve.loop.options.nearest && !form->solve.loop.options.skip_guard &&
         form->solve.loop.iterations <= GPROJI_SAFE_MOST)
-        gproji_format(text + length, size - length, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
-    else if (!known && length + strlen(help) < size)
-        gproji_append(text, size, length, help, strlen(help));
+        gproji_tell(result, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
+    else if (!known && strlen(result->message) + strlen(help) < sizeof result->message)
+        gproji_tell(result, help);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
 GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
-    size_t length = strlen(result->message);
     int32_t f, face = -1, count = 0;
     for (f = 0; unit > 0 && f < mesh->face_count; ++f) {
         double off;
@@ -23682,10 +23503,10 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
         if (off > worst) worst = off, face = f;
     }
     if (face >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
-                      "lengths): add planarity for circles",
-                      count, count == 1 ? " is" : "s are", face, worst);
+        gproji_tell(result,
+                    "; but %d face%s not planar, so the corners are on spheres only (face %d is off by %g mean edge "
+                    "lengths): add planarity for circles",
+                    count, count == 1 ? " is" : "s are", face, worst);
 }
 
 /* Says at which vertices the four faces' angles do not add up as on a cone, w1 + w3 = w2 + w4: with coplanar normals
@@ -23693,7 +23514,6 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
 GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     double worst = 1e-6;
-    size_t length = strlen(result->message);
     int32_t v, vertex = -1, count = 0;
     for (v = 0; v < mesh->vertex_count; ++v) {
         bool four = form->cone[v] >= 0 && gproj_mesh_valence(mesh, v) == 4;
@@ -23702,9 +23522,9 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
         if (off > worst) worst = off, vertex = v;
     }
     if (vertex >= 0)
-        gproji_format(result->message + length, sizeof result->message - length,
-                      "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
-                      count, count == 1 ? "vertex" : "vertices", vertex, worst);
+        gproji_tell(result,
+                    "; but around %d %s, flat or folded, the angles do not add up as on a cone (vertex %d: by %g)",
+                    count, count == 1 ? "vertex" : "vertices", vertex, worst);
 }
 
 /* ============================================================================================================
@@ -23753,10 +23573,7 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
     int32_t i;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        gproji_own own = gproji_own_of(form, i);
-        if (g->role < GPROJI_GUARD && own != GPROJI_OWN_CLOSENESS && own != GPROJI_OWN_FORCES &&
-            g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0)
-            return true;
+        if (g->role < GPROJI_GUIDE && g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0) return true;
     }
     return false;
 }
@@ -23785,6 +23602,8 @@ enum {
 
 static const gproji_rule gproji_smooth_change_rule = {"smooth change",   GPROJ_WISH,    GPROJ_PLACE_NONE,
                                                       GPROJI_OWN_METRIC, GPROJI_METRIC, NULL};
+/* Measures how forces change. They are free while all goes well, so that the shape moves no more than it must; once
+   steps fail, as with many forces at their bounds, they are braked, too. */
 static const gproji_rule gproji_force_change_rule = {"force change",   GPROJ_WISH,   GPROJ_PLACE_NONE,
                                                      GPROJI_OWN_BRAKE, GPROJI_BRAKE, NULL};
 
@@ -23828,21 +23647,6 @@ GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, int32_t group) {
     }
 }
 
-/* The group that measures how forces change, once. They are free while all goes well, so that the shape moves no more
-   than it must; once steps fail, as with many forces at their bounds, they are braked, too. */
-GPROJI_INTERNAL void gproji_add_force_metric(gproj_form *form) {
-    static const gproj_term one = {0, -1, 1};
-    gproj_system *s = form->system;
-    int32_t group = gproji_new_group(form, &gproji_force_change_rule, 0), e;
-    if (group < 0) return;
-    for (e = 0; e < form->mesh->edge_count && gproji_form_ready(form); ++e) {
-        int32_t *local;
-        if (form->statics->force[e] < 0) continue;
-        local = gproji_add_placed_rows(s, group, 0, 1, 1, &one, 1, 0, -1);
-        if (local) *local = form->statics->force[e];
-    }
-}
-
 /* -- the groups that the library adds to a form -- */
 
 static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
@@ -23860,9 +23664,47 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
     if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
-    if (own == GPROJI_OWN_FORCES) gproji_add_force_guidance(form);
+    if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
-    if (own == GPROJI_OWN_BRAKE) gproji_add_force_metric(form);
+    if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
+}
+
+/* Gives a group of the library's own its schedule; adds it, if it is missing and gets a weight. Returns the part; NULL:
+   there is none, or the form has an error. */
+GPROJI_INTERNAL gproji_part *gproji_schedule_own(gproj_form *form, gproji_own own, gproj_schedule schedule) {
+    gproji_part *part;
+    if (schedule.weight > 0) gproji_add_own_group(form, own);
+    part = gproji_own_part(form, own);
+    if (!part || !gproji_form_ready(form)) return NULL;
+    gproj_system_set_schedule(form->system, part->group, schedule);
+    return part;
+}
+
+/* Prepares the forces for a solve: gives them values, if there are none yet, and their guidance. */
+GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wishes) {
+    gproji_statics *s = form->statics;
+    gproj_schedule schedule = wishes ? gproj_guide(0.3) : gproj_fade(1, 5);
+    gproji_balance p;
+    bool guided = false;
+    const gproji_part *part;
+    const double *x;
+    int32_t e, row = 0;
+    if (!s || !gproji_is_on(form, s->group)) return;
+    s->lost[0] = s->lost[1] = 0;
+    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
+        /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
+           wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
+           solve for the nearest mesh forces are free. */
+        guided = gproji_start_forces(form, nearest, &p) && !nearest;
+        gproji_pool_give_all(&p.pool);
+        s->started = gproji_form_ready(form);
+    }
+    if (!wishes) schedule.decay = 0.3;
+    if (!guided) schedule.weight = 0;
+    part = gproji_schedule_own(form, GPROJI_OWN_FORCES, schedule);
+    x = gproj_system_values(form->system);
+    for (e = 0; part && e < form->mesh->edge_count; ++e)
+        if (s->force[e] >= 0) gproj_system_set_row(form->system, part->group, row++, NULL, -x[s->force[e]]);
 }
 
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
@@ -23873,18 +23715,15 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
-    int32_t half = gproji_max(1, iterations - iterations / 2), closeness, i;
-    gproj_schedule schedule;
-    if (wanted || nearby) gproji_add_own_group(form, GPROJI_OWN_CLOSENESS);
-    closeness = gproji_own_group(form, GPROJI_OWN_CLOSENESS);
-    if (closeness >= 0) {
-        schedule = nearby ? gproj_fade(beginning->closeness, 20) : gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
-        schedule.decay = nearby ? 0.7 : 0.3;
-        if (nearest && wanted) schedule = gproj_keep(1);
-        gproj_system_set_schedule(form->system, closeness, schedule);
-        for (i = 0; i < 3 * form->mesh->vertex_count; ++i)
-            gproj_system_set_row(form->system, closeness, i, NULL, -gproj_system_values(form->system)[i]);
-    }
+    int32_t half = gproji_max(1, iterations - iterations / 2), i;
+    gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
+    const gproji_part *part;
+    if (nearby) schedule = gproj_fade(beginning->closeness, 20);
+    schedule.decay = nearby ? 0.7 : 0.3;
+    if (nearest && wanted) schedule = gproj_keep(1);
+    part = gproji_schedule_own(form, GPROJI_OWN_CLOSENESS, schedule);
+    for (i = 0; part && i < 3 * form->mesh->vertex_count; ++i)
+        gproj_system_set_row(form->system, part->group, i, NULL, -gproj_system_values(form->system)[i]);
     if (nearest) return GPROJI_NEAREST_GUIDED;
     return others ? half : wanted ? gproji_min(5, half) : 0;
 }
@@ -23936,7 +23775,9 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     gproji_solve *solve = &form->solve;
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, ending = false;
+    bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, whole, corners,
+         ending = false;
     bool started = form->statics && form->statics->started;
     const gproji_part *part;
     double largest = 0; /* weight of a caller's wish */
@@ -23951,23 +23792,22 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
     gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness > 0);
-    if (!gproji_form_ready(form)) goto failed;
-    guided = gproji_set_default_guidance(form, iterations, beginning, (options && options->skip_closeness) || smooth,
-                                         nearest);
+    guided = gproji_set_default_guidance(form, iterations, beginning, skip_closeness || smooth, nearest);
     /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
-    metric = smooth && !options->skip_closeness;
-    if (metric) gproji_add_own_group(form, GPROJI_OWN_METRIC);
-    if (metric && forces) gproji_add_own_group(form, GPROJI_OWN_BRAKE);
-    if (!gproji_form_ready(form)) goto failed;
-    part = gproji_own_part(form, GPROJI_OWN_METRIC);
+    metric = smooth && !skip_closeness;
     anchored = metric && beginning->stiffness <= 1 && !gproji_has_active_wish(form);
-    if (metric) gproji_set_metric(form, part->group);
-    if (part) gproj_system_set_schedule(form->system, part->group, gproj_keep(metric ? gproji_metric_smooth : 0));
-    part = gproji_own_part(form, GPROJI_OWN_BRAKE);
-    if (part)
-        gproj_system_set_schedule(form->system, part->group, gproj_keep(metric && forces ? gproji_metric_force : 0));
-    gproji_set_guard(form, guided, smooth || (options && options->skip_guard));
-    gproji_set_corners(form, (smooth || (nearest && iterations > GPROJI_SAFE_MOST)) && !options->skip_guard);
+    part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
+    if (part && metric) gproji_set_metric(form, part->group);
+    gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
+    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. */
+    whole = !skip_guard && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    part = gproji_schedule_own(form, GPROJI_OWN_GUARD,
+                               gproj_fade(whole && !smooth ? gproji_guard_weight : 0,
+                                          gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
+    if (part) gproji_begin_guard(part);
+    corners = whole && (smooth || (nearest && iterations > GPROJI_SAFE_MOST));
+    part = gproji_schedule_own(form, GPROJI_OWN_CORNERS, gproj_keep(corners ? gproji_corner_weight : 0));
+    if (part) gproji_begin_corners(part);
     if (!gproji_form_ready(form)) goto failed;
     solve->structure = gproji_structure_of(form->system);
     solve->on = gproji_begin_loop(&solve->loop, form->system, beginning->stiffness, anchored, iterations, options);
@@ -24007,9 +23847,6 @@ GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
 
 /* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
-    static const char shrinks[] =
-        "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference";
-    static const char alone[] = "; wishes that only guide are left out: no whole mesh was found with them";
     gproji_loop *loop = &form->solve.loop;
     gproj_result *result = &loop->result;
     gproji_hooks *hooks = &loop->hooks;
@@ -24046,21 +23883,20 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
     if (gproji_has_active_wish(form) && !loop->wishes.left_out && !gproji_is_held(form))
-        gproji_append(result->message, sizeof result->message, strlen(result->message), shrinks, sizeof shrinks - 1);
+        gproji_tell(result, "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference");
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
         size_t length = strlen(result->message);
         if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
         if (loop->hopeful && !result->message[length]) /* nothing is known against it */
-            gproji_append(result->message, sizeof result->message, length, gproji_more_iterations,
-                          sizeof gproji_more_iterations - 1);
+            gproji_tell(result, gproji_more_iterations);
         doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
         if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
     if (loop->wishes.left_out)
-        gproji_append(result->message, sizeof result->message, strlen(result->message), alone, sizeof alone - 1);
+        gproji_tell(result, "; wishes that only guide are left out: no whole mesh was found with them");
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
     return *result;
@@ -24108,7 +23944,6 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, doubl
    follow have three times as many. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
-    static const char guided[] = "; no whole mesh was found at a minimum of the wishes, which have only guided here";
     gproj_system *s = form->system;
     double *x = gproj_system_values(s);
     size_t count = (size_t)gproj_system_variable_count(s);
@@ -24174,15 +24009,12 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         result = gproji_failed_result(gproj_form_error(form));
     }
     result.attempts = attempt;
-    if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0) {
-        size_t length = strlen(result.message);
-        gproji_format(result.message + length, sizeof result.message - length, "; none of %d attempts ended better",
-                      attempt);
-    }
+    if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0)
+        gproji_tell(&result, "; none of %d attempts ended better", attempt);
     if (away && wished && result.outcome != GPROJ_FAILED) {
         if (result.outcome == GPROJ_CONVERGED) result.outcome = GPROJ_ITERATION_LIMIT;
         result.optimality = HUGE_VAL;
-        gproji_append(result.message, sizeof result.message, strlen(result.message), guided, sizeof guided - 1);
+        gproji_tell(&result, "; no whole mesh was found at a minimum of the wishes, which have only guided here");
     }
     gproji_give(&form->heap, start, count, sizeof *start);
     gproji_give(&form->heap, end, count, sizeof *end);
@@ -24255,7 +24087,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
         return gproji_end_frames(
             solve, GPROJ_ERROR_ARGUMENT,
             "advance: seconds must not be negative, and need a clock in the host, as gproj_default_host has");
-    if (solve->on && gproji_structure_of(form->system).all != solve->structure.all)
+    if (solve->on && gproji_structure_of(form->system) != solve->structure)
         return gproji_end_frames(solve, GPROJ_ERROR_STATE,
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
@@ -24574,10 +24406,11 @@ struct gproj_drag {
     gproji_heap heap;
     gproj_error error;
     gproj_form *form;
-    gproji_structure structure; /* of the system at the beginning */
+    int64_t structure; /* of the system at the beginning: gproji_structure_of */
     gproj_drag_options options;
     gproj_drag_info info;
     gproji_handle_list handle;
+    int32_t groups;    /* of the system at the beginning */
     int32_t columns;   /* 3 * handles */
     int32_t variables; /* of the system */
     double *first;     /* 3 * vertex_count: the vertices at the beginning */
@@ -24760,7 +24593,7 @@ GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
     } else if (drag->released) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: the handles have been released; end or cancel it");
-    } else if (gproji_structure_of(drag->form->system).all != drag->structure.all) {
+    } else if (gproji_structure_of(drag->form->system) != drag->structure) {
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
     }
@@ -24854,6 +24687,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     int64_t m = 3 * (int64_t)h->count, n = gproj_system_variable_count(form->system),
             entries = h->start ? h->start[h->count] - h->start[0] : h->count;
     drag->info.handles = h->count;
+    drag->groups = gproj_system_group_count(form->system);
     drag->columns = (int32_t)m;
     drag->variables = (int32_t)n;
     drag->before.state_size = gproj_state_size(form);
@@ -24874,8 +24708,7 @@ GPROJI_INTERNAL bool gproji_take_drag(gproj_drag *drag, const gproj_handles *h) 
     drag->pull = (double *)gproji_pool_take(pool, m * m, sizeof *drag->pull);
     drag->work = (double *)gproji_pool_take(pool, m * (m + 1), sizeof *drag->work);
     drag->name = gproji_take_ints(pool, m);
-    drag->before.schedule =
-        (gproj_schedule *)gproji_pool_take(pool, gproj_system_group_count(form->system), sizeof *drag->before.schedule);
+    drag->before.schedule = (gproj_schedule *)gproji_pool_take(pool, drag->groups, sizeof *drag->before.schedule);
     drag->before.state = (uint8_t *)gproji_pool_take(pool, (int64_t)drag->before.state_size, 1);
     return !pool->failed;
 }
@@ -25009,7 +24842,10 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
     gproj_schedule fairness = gproj_fade(on ? gproji_drag_fairness : 0, GPROJI_DRAG_GUIDED);
     gproj_schedule handles = gproj_fade(on ? 1 : 0, GPROJI_DRAG_GUIDED);
     int32_t g;
-    for (g = 0; g < drag->structure.groups; ++g) {
+    fairness.decay = handles.decay = gproji_drag_decay;
+    gproji_schedule_own(form, GPROJI_OWN_DRAG_FAIRNESS, fairness);
+    gproji_schedule_own(form, GPROJI_OWN_DRAG_HANDLES, handles);
+    for (g = 0; g < drag->groups && gproji_form_ready(form); ++g) {
         const gproji_group *group = gproji_group_at(form->system, g);
         gproj_schedule schedule;
         if (group->kind != GPROJ_WISH || gproji_own_of(form, g)) continue;
@@ -25018,9 +24854,6 @@ GPROJI_INTERNAL void gproji_schedule_release(gproj_drag *drag, bool on) {
         if (on && !drag->options.keep_wishes) schedule.weight = 0;
         gproj_system_set_schedule(form->system, g, schedule);
     }
-    fairness.decay = handles.decay = gproji_drag_decay;
-    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), fairness);
-    gproj_system_set_schedule(form->system, gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES), handles);
 }
 
 GPROJ_API void gproj_drag_cancel(gproj_drag *drag) {
@@ -25051,8 +24884,7 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
     s = form->system;
     drag->released = true;
     gproji_reset_mesh(form);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_FAIRNESS);
-    gproji_add_own_group(form, GPROJI_OWN_DRAG_HANDLES);
+    gproji_schedule_release(drag, true);
     if (!gproji_form_ready(form)) return false;
     soft = gproji_own_group(form, GPROJI_OWN_DRAG_FAIRNESS), group = gproji_own_group(form, GPROJI_OWN_DRAG_HANDLES);
     fairness = gproji_group_at(s, soft), at = gproji_group_at(s, group);
@@ -25080,7 +24912,6 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-    gproji_schedule_release(drag, true);
     /* 2. A solve is refused during a drag, but for this one. */
     form->drag = NULL;
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, &gproji_beginnings[0], NULL);
@@ -25089,8 +24920,6 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
 }
 
 GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
-    static const char stuck[] = "; the handles did not move: what must hold leaves them no freedom";
-    static const char more[] = "; gproj_solve goes on from here";
     gproj_result result;
     gproj_form *form;
     if (!drag) return gproji_refused_result(GPROJ_ERROR_ARGUMENT, "drag: there is no drag");
@@ -25111,9 +24940,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
         form->solve.finished = false;
         gproji_schedule_release(drag, false);
         if (drag->info.freedom == 0)
-            gproji_append(result.message, sizeof result.message, strlen(result.message), stuck, sizeof stuck - 1);
-        if (result.outcome == GPROJ_ITERATION_LIMIT)
-            gproji_append(result.message, sizeof result.message, strlen(result.message), more, sizeof more - 1);
+            gproji_tell(&result, "; the handles did not move: what must hold leaves them no freedom");
+        if (result.outcome == GPROJ_ITERATION_LIMIT) gproji_tell(&result, "; gproj_solve goes on from here");
     }
     if (result.outcome == GPROJ_FAILED) gproji_reset_mesh(form);
     gproji_destroy_drag(drag);
