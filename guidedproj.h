@@ -3693,8 +3693,8 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage rows
-   [from, to), which are ends of pieces. */
+/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage
+   rows [from, to), which are ends of pieces. */
 GPROJI_INTERNAL void gproji_add_columns(const gproji_panel *parent, const gproji_piece *piece, int32_t pieces,
                                         const double *update, int32_t rows, int32_t from, int32_t to) {
     int32_t first = 0, last = pieces;
@@ -16375,8 +16375,8 @@ GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual
     return GPROJ_OK;
 }
 
-/* Drafts the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and each
-   vertex with faces. */
+/* Drafts the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and
+   each vertex with faces. */
 GPROJI_INTERNAL gproj_code gproji_draft_diagonals(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;

@@ -176,6 +176,20 @@ GPROJT_TEST(subdivision) {
     gproj_mesh_destroy(mesh);
 }
 
+GPROJT_TEST(dual_and_diagonals) {
+    int32_t n;
+    for (n = 3; n < 5; ++n) { /* 4 * 24 + 3 * 16 and 4 * 31 + 3 * 20 corners; 149 are the most */
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(n, 3)), *made;
+        made = gproj_mesh_dual(mesh, NULL, NULL, &gprojt_last);
+        GPROJT_CHECK(n == 3 ? made != NULL : !made && gprojt_is_size("could have 184 corners of faces, and 149 are"));
+        gproj_mesh_destroy(made);
+        made = gproj_mesh_diagonals(mesh, NULL, &gprojt_last);
+        GPROJT_CHECK(n == 3 ? made != NULL : !made && gprojt_is_size("could have 184 corners of faces, and 149 are"));
+        gproj_mesh_destroy(made);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Splits an edge again and again until it is refused; the edit is then a mesh as it was. */
 static int32_t gprojt_split_to_the_end(gproj_edit *edit) {
     gproj_mesh *before, *after;
@@ -485,6 +499,7 @@ int main(void) {
     GPROJT_RUN(vertices_and_corners);
     GPROJT_RUN(texts);
     GPROJT_RUN(subdivision);
+    GPROJT_RUN(dual_and_diagonals);
     GPROJT_RUN(edits);
     GPROJT_RUN(curves);
     GPROJT_RUN(supports);
