@@ -4348,7 +4348,7 @@ typedef struct gproji_nd_cut {
 
 /* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
    joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
-   limit. The residual network has the same arcs as long as they have room, and the opposite ones where units flow. */
+   limit. The residual network has the same arcs as long as they have room, and opposite ones as long as units flow. */
 typedef struct gproji_band {
     int32_t nodes;
     int32_t *id;             /* nodes: index in the part */
@@ -4796,7 +4796,7 @@ GPROJI_INTERNAL void gproji_band_search(gproji_band *band, int32_t tail, bool ag
     while (head < tail) {
         int32_t s = band->queue[head++], v = s >> 1, other = !(s & 1), level = band->level[s] + 1;
         int32_t end = band->start[v + 1];
-        bool unlimited = against == other; /* from exits to entries; back again only what flows */
+        bool unlimited = against == other; /* from exits to entries; back again no more than flows */
         const unsigned char *flow = other ? band->in : band->out;
         for (c = unlimited || band->load[v] > 0 ? band->start[v] : end; c < end; ++c)
             if (unlimited || flow[c] > 0) tail = gproji_band_reach(band, 2 * band->to[c] + other, level, tail);
@@ -4813,20 +4813,6 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
         if (band->level[2 * band->to[c] + other] == nearer && (!other || band->in[c] > 0)) break;
     band->turn[s] = c;
     return c < end ? 2 * band->to[c] + other : -1;
-}
-
-/* Sends a unit from state s to state `next`, along arc turn[s] unless both belong to one node. */
-GPROJI_INLINED void gproji_band_send(gproji_band *band, int32_t s, int32_t next) {
-    int32_t v = s >> 1, w = next >> 1, c = band->turn[s], back = band->start[w];
-    if (v == w) {
-        band->load[v] += next - s;
-        return;
-    }
-    while (band->to[back] != v) ++back;
-    if (s & 1)
-        band->out[c]++, band->in[back]++;
-    else
-        band->in[c]--, band->out[back]--;
 }
 
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
@@ -4850,12 +4836,26 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
             int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
             if (next < 0) { /* a dead end */
                 band->level[path[depth--]] = -1;
-            } else if (next != s) { /* one step further */
-                path[++depth] = next;
-            } else { /* at the sink: send a unit along the path, and begin again */
-                for (k = 0; k < depth; ++k) gproji_band_send(band, path[k], path[k + 1]);
-                depth = 0;
+                continue;
             }
+            if (next != s) { /* one step further */
+                path[++depth] = next;
+                continue;
+            }
+            /* At the sink: send a unit along the path, and begin again. */
+            for (k = 0; k < depth; ++k) {
+                int32_t v = path[k] >> 1, w = path[k + 1] >> 1, c = band->turn[path[k]], back = band->start[w];
+                if (v == w) { /* to the exit, or back to the entry */
+                    band->load[v] += path[k + 1] - path[k];
+                    continue;
+                }
+                while (band->to[back] != v) ++back;
+                if (path[k] & 1)
+                    band->out[c]++, band->in[back]++;
+                else
+                    band->in[c]--, band->out[back]--;
+            }
+            depth = 0;
         }
     }
     return found;
