@@ -2168,7 +2168,7 @@ GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t
 
 /* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
-    int32_t shift = 64 - gproji_bit_length(w), shift5, k;
+    int32_t shift = 64 - gproji_bit_length(w), shift5, half, k;
     uint64_t five = 1, high, low;
     for (k = power < 0 ? -power : power; k > 0; --k) five *= 5;
     w <<= shift;
@@ -2184,14 +2184,9 @@ GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
         }
         return gproji_round_significand(high, power, low != 0);
     }
-    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved if that would have 65 bits */
-    if (w >= five) {
-        high = gproji_divide_128(w >> 1, w << 63, five, &low);
-        ++power;
-    } else {
-        high = gproji_divide_128(w, 0, five, &low);
-    }
-    return gproji_round_significand(high, power, low != 0);
+    half = w >= five; /* w 2^64 / 5^p, halved if that would have 65 bits */
+    high = gproji_divide_128(w >> half, half ? w << 63 : 0, five, &low);
+    return gproji_round_significand(high, power + shift5 - shift - 64 + half, low != 0);
 }
 
 /* The double nearest to 0.d1d2... 10^point, for `count` <= GPROJI_DIGITS_MAX digits of which the first is not 0. */
