@@ -3658,23 +3658,16 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage rows
+/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns for the parent's storage rows
    [from, to), which are ends of pieces. */
 GPROJI_INTERNAL void gproji_add_columns(const gproji_panel *parent, const gproji_piece *piece, int32_t pieces,
                                         const double *update, int32_t rows, int32_t from, int32_t to) {
-    int32_t first = 0, last = pieces;
-    while (first < last) { /* find the first piece from there on */
-        int32_t middle = first + (last - first) / 2;
-        if (piece[middle].to < from)
-            first = middle + 1;
-        else
-            last = middle;
-    }
-    for (; first < pieces && piece[first].to < to; ++first) {
-        int32_t column = piece[first].from, strip = gproji_strip_begin(column), at = piece[first].to;
-        parent->kernels->add(piece + first, pieces - first, update + gproji_update_offset(rows, column), rows - strip,
-                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, at),
-                             gproji_column_stride(parent, at));
+    for (; pieces > 0 && piece->to < to; ++piece, --pieces) {
+        int32_t column = piece->from, strip = gproji_strip_begin(column);
+        if (piece->to < from) continue;
+        parent->kernels->add(piece, pieces, update + gproji_update_offset(rows, column), rows - strip,
+                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, piece->to),
+                             gproji_column_stride(parent, piece->to));
     }
 }
 
@@ -6452,11 +6445,8 @@ GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gpr
     gproji_gathering gathering;
     gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
     gathering.chunk = front->child < 0 || entries <= GPROJI_CACHED ? to - from : GPROJI_TASK_COLUMNS;
-    if (gathering.chunk >= to - from)
-        gproji_gather_chunk(&gathering, 0);
-    else
-        gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
-                         gproji_gather_chunk, &gathering);
+    gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, gathering.chunk), gproji_gather_chunk,
+                     &gathering);
     c->sweep.load(c->sweep.user, f, panel, from, to);
 }
 
