@@ -2146,30 +2146,10 @@ GPROJI_INLINE uint64_t gproji_multiply_64(uint64_t a, uint64_t b, uint64_t *low)
     return a1 * b1 + (p01 >> 32) + (p10 >> 32) + (middle >> 32);
 }
 
-/* floor((high 2^64 + low) / d) for high < d, with d's highest bit set; two digits of 32 bits (Knuth 1969, 4.3.1). */
-GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t d, uint64_t *remainder) {
-    uint64_t d1 = d >> 32, d0 = d & 0xffffffffu, q = 0, estimate, rest, next;
-    int32_t step;
-    for (step = 0; step < 2; ++step) {
-        next = step ? low & 0xffffffffu : low >> 32;
-        estimate = high / d1;
-        rest = high % d1;
-        while (estimate >> 32 || estimate * d0 > ((rest << 32) | next)) {
-            --estimate;
-            rest += d1;
-            if (rest >> 32) break;
-        }
-        high = ((high << 32) | next) - estimate * d; /* modulo 2^64; the true value is below d */
-        q = (q << 32) | estimate;
-    }
-    *remainder = high;
-    return q;
-}
-
 /* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
     int32_t shift = 64 - gproji_bit_length(w), shift5, half, k;
-    uint64_t five = 1, high, low;
+    uint64_t five = 1, high, low, quotient = 0;
     for (k = power < 0 ? -power : power; k > 0; --k) five *= 5;
     w <<= shift;
     shift5 = 64 - gproji_bit_length(five);
@@ -2184,9 +2164,20 @@ GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
         }
         return gproji_round_significand(high, power, low != 0);
     }
-    half = w >= five; /* w 2^64 / 5^p, halved if that would have 65 bits */
-    high = gproji_divide_128(w >> half, half ? w << 63 : 0, five, &low);
-    return gproji_round_significand(high, power + shift5 - shift - 64 + half, low != 0);
+    /* w 2^64 / 5^p, halved if that would have 65 bits: two digits of 32 bits (Knuth 1969, 4.3.1) */
+    half = w >= five;
+    low = half ? w << 63 : 0;
+    for (high = w >> half, k = 0; k < 2; ++k, low <<= 32) {
+        uint64_t d1 = five >> 32, d0 = five & 0xffffffffu, next = low >> 32, digit = high / d1, rest = high % d1;
+        while (digit >> 32 || digit * d0 > ((rest << 32) | next)) {
+            --digit;
+            rest += d1;
+            if (rest >> 32) break;
+        }
+        high = ((high << 32) | next) - digit * five; /* modulo 2^64; the true value is below 5^p */
+        quotient = (quotient << 32) | digit;
+    }
+    return gproji_round_significand(quotient, power + shift5 - shift - 64 + half, high != 0);
 }
 
 /* The double nearest to 0.d1d2... 10^point, for `count` <= GPROJI_DIGITS_MAX digits of which the first is not 0. */
