@@ -7608,7 +7608,7 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
 
 /* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
-   error, parallel, vector, dense, symbolic, cholesky.
+   error, parallel, vector, dense, ordering, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. Rows
        phi(x) = sum a x_i x_j + sum b x_i + c
