@@ -2156,30 +2156,10 @@ GPROJI_INLINE uint64_t gproji_multiply_64(uint64_t a, uint64_t b, uint64_t *low)
     return a1 * b1 + (p01 >> 32) + (p10 >> 32) + (middle >> 32);
 }
 
-/* floor((high 2^64 + low) / d) for high < d, with d's highest bit set; two digits of 32 bits (Knuth 1969, 4.3.1). */
-GPROJI_INTERNAL uint64_t gproji_divide_128(uint64_t high, uint64_t low, uint64_t d, uint64_t *remainder) {
-    uint64_t d1 = d >> 32, d0 = d & 0xffffffffu, q = 0, estimate, rest, next;
-    int32_t step;
-    for (step = 0; step < 2; ++step) {
-        next = step ? low & 0xffffffffu : low >> 32;
-        estimate = high / d1;
-        rest = high % d1;
-        while (estimate >> 32 || estimate * d0 > ((rest << 32) | next)) {
-            --estimate;
-            rest += d1;
-            if (rest >> 32) break;
-        }
-        high = ((high << 32) | next) - estimate * d; /* modulo 2^64; the true value is below d */
-        q = (q << 32) | estimate;
-    }
-    *remainder = high;
-    return q;
-}
-
 /* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
-    int32_t shift = 64 - gproji_bit_length(w), shift5, k;
-    uint64_t five = 1, high, low;
+    int32_t shift = 64 - gproji_bit_length(w), shift5, half, k;
+    uint64_t five = 1, high, low, quotient = 0;
     for (k = power < 0 ? -power : power; k > 0; --k) five *= 5;
     w <<= shift;
     shift5 = 64 - gproji_bit_length(five);
@@ -2194,14 +2174,20 @@ GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
         }
         return gproji_round_significand(high, power, low != 0);
     }
-    power += shift5 - shift - 64; /* w 2^64 / 5^p, halved if that would have 65 bits */
-    if (w >= five) {
-        high = gproji_divide_128(w >> 1, w << 63, five, &low);
-        ++power;
-    } else {
-        high = gproji_divide_128(w, 0, five, &low);
+    /* w 2^64 / 5^p, halved if that would have 65 bits: two digits of 32 bits (Knuth 1969, 4.3.1) */
+    half = w >= five;
+    low = half ? w << 63 : 0;
+    for (high = w >> half, k = 0; k < 2; ++k, low <<= 32) {
+        uint64_t d1 = five >> 32, d0 = five & 0xffffffffu, next = low >> 32, digit = high / d1, rest = high % d1;
+        while (digit >> 32 || digit * d0 > ((rest << 32) | next)) {
+            --digit;
+            rest += d1;
+            if (rest >> 32) break;
+        }
+        high = ((high << 32) | next) - digit * five; /* modulo 2^64; the true value is below 5^p */
+        quotient = (quotient << 32) | digit;
     }
-    return gproji_round_significand(high, power, low != 0);
+    return gproji_round_significand(quotient, power + shift5 - shift - 64 + half, high != 0);
 }
 
 /* The double nearest to 0.d1d2... 10^point, for `count` <= GPROJI_DIGITS_MAX digits of which the first is not 0. */
@@ -3693,23 +3679,16 @@ GPROJI_INTERNAL int32_t gproji_find_pieces(const gproji_kernels *kernels, int32_
     return count;
 }
 
-/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns that go to the parent's storage
-   rows [from, to), which are ends of pieces. */
+/* Extend-adds a child's update matrix, with `rows` rows cut into pieces: the columns for the parent's storage rows
+   [from, to), which are ends of pieces. */
 GPROJI_INTERNAL void gproji_add_columns(const gproji_panel *parent, const gproji_piece *piece, int32_t pieces,
                                         const double *update, int32_t rows, int32_t from, int32_t to) {
-    int32_t first = 0, last = pieces;
-    while (first < last) { /* find the first piece from there on */
-        int32_t middle = first + (last - first) / 2;
-        if (piece[middle].to < from)
-            first = middle + 1;
-        else
-            last = middle;
-    }
-    for (; first < pieces && piece[first].to < to; ++first) {
-        int32_t column = piece[first].from, strip = gproji_strip_begin(column), at = piece[first].to;
-        parent->kernels->add(piece + first, pieces - first, update + gproji_update_offset(rows, column), rows - strip,
-                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, at),
-                             gproji_column_stride(parent, at));
+    for (; pieces > 0 && piece->to < to; ++piece, --pieces) {
+        int32_t column = piece->from, strip = gproji_strip_begin(column);
+        if (piece->to < from) continue;
+        parent->kernels->add(piece, pieces, update + gproji_update_offset(rows, column), rows - strip,
+                             strip + GPROJI_STRIP - column, gproji_panel_column(parent, piece->to),
+                             gproji_column_stride(parent, piece->to));
     }
 }
 
@@ -4378,7 +4357,7 @@ typedef struct gproji_nd_cut {
 
 /* A network for the flow through a band of nodes. Node i is split into an entry, state 2 i, and an exit, state 2 i + 1,
    joined by an arc with the node's weight, in whole units, as capacity. Exits lead to the neighbours' entries without
-   limit. The residual network has the same arcs as long as they have room, and the opposite ones where units flow. */
+   limit. The residual network has the same arcs as long as they have room, and opposite ones as long as units flow. */
 typedef struct gproji_band {
     int32_t nodes;
     int32_t *id;             /* nodes: index in the part */
@@ -4826,7 +4805,7 @@ GPROJI_INTERNAL void gproji_band_search(gproji_band *band, int32_t tail, bool ag
     while (head < tail) {
         int32_t s = band->queue[head++], v = s >> 1, other = !(s & 1), level = band->level[s] + 1;
         int32_t end = band->start[v + 1];
-        bool unlimited = against == other; /* from exits to entries; back again only what flows */
+        bool unlimited = against == other; /* from exits to entries; back again no more than flows */
         const unsigned char *flow = other ? band->in : band->out;
         for (c = unlimited || band->load[v] > 0 ? band->start[v] : end; c < end; ++c)
             if (unlimited || flow[c] > 0) tail = gproji_band_reach(band, 2 * band->to[c] + other, level, tail);
@@ -4843,20 +4822,6 @@ GPROJI_INLINED int32_t gproji_band_next(const gproji_band *band, int32_t s) {
         if (band->level[2 * band->to[c] + other] == nearer && (!other || band->in[c] > 0)) break;
     band->turn[s] = c;
     return c < end ? 2 * band->to[c] + other : -1;
-}
-
-/* Sends a unit from state s to state `next`, along arc turn[s] unless both belong to one node. */
-GPROJI_INLINED void gproji_band_send(gproji_band *band, int32_t s, int32_t next) {
-    int32_t v = s >> 1, w = next >> 1, c = band->turn[s], back = band->start[w];
-    if (v == w) {
-        band->load[v] += next - s;
-        return;
-    }
-    while (band->to[back] != v) ++back;
-    if (s & 1)
-        band->out[c]++, band->in[back]++;
-    else
-        band->in[c]--, band->out[back]--;
 }
 
 /* One round: augments along shortest paths until none is left with that length. False if there was none at all; then
@@ -4880,12 +4845,26 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
             int32_t s = path[depth], next = band->level[s] > 0 ? gproji_band_next(band, s) : s;
             if (next < 0) { /* a dead end */
                 band->level[path[depth--]] = -1;
-            } else if (next != s) { /* one step further */
-                path[++depth] = next;
-            } else { /* at the sink: send a unit along the path, and begin again */
-                for (k = 0; k < depth; ++k) gproji_band_send(band, path[k], path[k + 1]);
-                depth = 0;
+                continue;
             }
+            if (next != s) { /* one step further */
+                path[++depth] = next;
+                continue;
+            }
+            /* At the sink: send a unit along the path, and begin again. */
+            for (k = 0; k < depth; ++k) {
+                int32_t v = path[k] >> 1, w = path[k + 1] >> 1, c = band->turn[path[k]], back = band->start[w];
+                if (v == w) { /* to the exit, or back to the entry */
+                    band->load[v] += path[k + 1] - path[k];
+                    continue;
+                }
+                while (band->to[back] != v) ++back;
+                if (path[k] & 1)
+                    band->out[c]++, band->in[back]++;
+                else
+                    band->in[c]--, band->out[back]--;
+            }
+            depth = 0;
         }
     }
     return found;
@@ -6487,11 +6466,8 @@ GPROJI_INTERNAL void gproji_gather(const gproj_cholesky *c, int32_t f, const gpr
     gproji_gathering gathering;
     gathering.c = c, gathering.front = front, gathering.panel = panel, gathering.from = from, gathering.to = to;
     gathering.chunk = front->child < 0 || entries <= GPROJI_CACHED ? to - from : GPROJI_TASK_COLUMNS;
-    if (gathering.chunk >= to - from)
-        gproji_gather_chunk(&gathering, 0);
-    else
-        gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, GPROJI_TASK_COLUMNS),
-                         gproji_gather_chunk, &gathering);
+    gproji_run_tasks(parallel, 20.0 * (double)entries, gproji_pieces(to - from, gathering.chunk), gproji_gather_chunk,
+                     &gathering);
     c->sweep.load(c->sweep.user, f, panel, from, to);
 }
 
@@ -7662,7 +7638,7 @@ GPROJI_INTERNAL uint64_t gproji_hash_bytes(uint64_t hash, const uint8_t *byte, s
 
 /* ============================================================================================================
    >>system   Variables, groups of quadratic rows, and the matrix in their normal equations. Uses platform, memory,
-   error, parallel, vector, dense, symbolic, cholesky.
+   error, parallel, vector, dense, ordering, symbolic, cholesky.
 
    Based on Tang, Sun, Gomes, Wallner, Pottmann: Form-finding with Polyhedral Meshes Made Simple (2014), section 3. Rows
        phi(x) = sum a x_i x_j + sum b x_i + c
