@@ -7963,7 +7963,7 @@ struct gproj_system {
     gproj_progress progress;
     double stiffness;      /* in steps: factor on the weights of metric groups; 0: they rest */
     bool anchored;         /* metric groups measure the way from where the solve began, not the step alone */
-    gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
+    gproji_yielding yield; /* in this solve: see gproji_run_loop and gproji_let_safeguards_yield */
     double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
@@ -9149,20 +9149,6 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
-/* gradient = sum w^2 phi grad phi over narrow rows that act: half their merit's gradient. */
-GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
-    int32_t i, r;
-    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->vector.gradient);
-        }
-    }
-}
-
 /* -- the matrix -- */
 
 /* Arguments for loading fronts: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature
@@ -9252,7 +9238,8 @@ GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
     return s->vector.sides + (int64_t)s->variable_count * (index + 1);
 }
 
-/* Writes the columns of U; only their first n numbers count. Returns how many dense rows act. */
+/* Writes the columns of U, of which only the first n numbers count, and wide.vector = w phi. Returns how many dense
+   rows act. */
 GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     gproji_row_name at = {0, -1};
     const gproji_row *row;
@@ -9260,8 +9247,9 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
         const gproji_group *g = &s->group[at.group];
         const double *gradient = g->local.gradient + row->local;
-        double *out = gproji_wide_side(s, count++), scale = sqrt(gproji_weight2(g, row));
+        double *out = gproji_wide_side(s, count), scale = sqrt(gproji_weight2(g, row));
         size_t first, end, v;
+        s->wide.vector[count++] = scale * row->phi;
         if (!row->contiguous) {
             memset(out, 0, n * sizeof *out);
             gproji_row_add(g, row, scale, out);
@@ -9277,16 +9265,6 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     return count;
 }
 
-/* wide.vector = w phi. */
-GPROJI_INTERNAL void gproji_wide_values(gproj_system *s) {
-    gproji_row_name at = {0, -1};
-    const gproji_row *row;
-    int32_t index = 0;
-    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        s->wide.vector[index++] = sqrt(gproji_weight2(&s->group[at.group], row)) * row->phi;
-    }
-}
-
 /* z becomes z - Y m; wide.vector: (I + Y'Y) m without Y'z, which becomes m. */
 GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
     size_t n = (size_t)s->variable_count, i;
@@ -9300,9 +9278,19 @@ GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide, double *
     }
 }
 
-/* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
+/* Writes a step's right-hand sides, -gradient and U, the gradient = sum w^2 phi grad phi being over narrow rows that
+   act: half their merit's. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
-    int32_t v;
+    int32_t i, r, v;
+    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!row->wide && row->active)
+                gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->vector.gradient);
+        }
+    }
     for (v = 0; v < s->variable_count; ++v) s->vector.step[v] = -s->vector.gradient[v];
     return gproji_wide_columns(s, (size_t)s->variable_count);
 }
@@ -9329,7 +9317,6 @@ GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide, bool take
                     gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), n) + (k == i);
         gproji_small_factor(s->wide.matrix, wide, s->wide_count, 1);
         /* 3. z - Y m. */
-        gproji_wide_values(s);
         gproji_wide_correct(s, wide, s->vector.step);
     }
     gproji_cholesky_backward(c, s->vector.step, s->vector.step);
@@ -10312,7 +10299,6 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     /* I + U'U - Y'Y, and w phi + U'b - Y'z: y is eliminated. */
-    gproji_wide_values(s);
     for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
@@ -10532,7 +10518,7 @@ enum {
     GPROJI_BALANCE_ITERATIONS = 20, /* without wishes; earlier, constraints may be in balance in passing */
     GPROJI_WARY = 4,                /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
-    GPROJI_PASS_TASKS = 64,          /* at most */
+    GPROJI_STEP_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
 };
 
@@ -10729,64 +10715,17 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* A pass over all variables, by several threads. */
-typedef struct gproji_pass {
-    gproj_system *system;
-    double t;
-    int32_t tasks;
-    double largest[GPROJI_PASS_TASKS]; /* found by each task; infinite if it met a NaN */
-} gproji_pass;
-
-/* Makes the pass; returns the largest number found. */
-GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task task) {
-    gproji_pass pass;
-    double largest = 0;
-    int32_t k;
-    pass.system = s, pass.t = t;
-    pass.tasks = gproji_max(1, gproji_min(GPROJI_PASS_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
-    gproji_for(&s->host.parallel, pass.tasks, task, &pass);
-    for (k = 0; k < pass.tasks; ++k) largest = gproji_fmax(largest, pass.largest[k]);
-    return largest;
-}
-
-/* max |x| */
-GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    const gproj_system *s = pass->system;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    double largest = 0;
-    for (; v < end; ++v)
-        if (!(fabs(s->x[v]) <= largest)) largest = gproji_magnitude(s->x[v]);
-    pass->largest[task] = largest;
-}
-
-/* x = saved + t dx; the largest |t dx| */
-GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    gproj_system *s = pass->system;
-    const double *step = s->vector.step, *saved = s->vector.saved;
-    double *x = s->x, t = pass->t, largest = 0;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    for (; v < end; ++v) {
-        double d = t * step[v];
-        x[v] = saved[v] + d;
-        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
-    }
-    pass->largest[task] = largest;
-}
-
 /* The caller's tolerance, or the residual that rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     gproj_system *s = loop->system;
-    double tolerance, extent, named = -1;
+    double tolerance, extent = 0, named = -1;
     bool large;
     int64_t l;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
     /* 1. Rounding of single variables. A stray one that no constraint or bound names must not raise it. */
-    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    for (i = 0; i < s->variable_count; ++i)
+        if (!(fabs(s->x[i]) <= extent)) extent = gproji_magnitude(s->x[i]);
     large = 8 * DBL_EPSILON * extent > 1e-11;
     for (i = 0; large && i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -10868,10 +10807,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t wide, sides;
     bool by_multipliers = s->schur.on, factored;
-    if (by_multipliers)
-        gproji_schur_assemble(s, epsilon);
-    else
-        gproji_merit_gradient(s);
+    if (by_multipliers) gproji_schur_assemble(s, epsilon);
     wide = by_multipliers ? s->wide.acting : gproji_step_sides(s);
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     sides = wide < s->cholesky->batch ? wide + 1 : 0; /* go through the fronts while these are in the cache */
@@ -10889,8 +10825,40 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     return true;
 }
 
+/* Part of a step that several threads take. */
+typedef struct gproji_stride {
+    gproj_system *system;
+    double t;
+    int32_t tasks;
+    double largest[GPROJI_STEP_TASKS]; /* |t dx| in each task; infinite if it met a NaN */
+} gproji_stride;
+
+GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
+    gproji_stride *stride = (gproji_stride *)data;
+    gproj_system *s = stride->system;
+    const double *step = s->vector.step, *saved = s->vector.saved;
+    double *x = s->x, t = stride->t, largest = 0;
+    int32_t v = gproji_chunk_start(s->variable_count, stride->tasks, task);
+    int32_t end = gproji_chunk_start(s->variable_count, stride->tasks, task + 1);
+    for (; v < end; ++v) {
+        double d = t * step[v];
+        x[v] = saved[v] + d;
+        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
+    }
+    stride->largest[task] = largest;
+}
+
 /* x = saved + t dx; returns the largest |t dx|, infinite if it is not a number. */
-GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
+GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
+    gproji_stride stride;
+    double largest = 0;
+    int32_t k;
+    stride.system = s, stride.t = t;
+    stride.tasks = gproji_max(1, gproji_min(GPROJI_STEP_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
+    gproji_for(&s->host.parallel, stride.tasks, gproji_step_task, &stride);
+    for (k = 0; k < stride.tasks; ++k) largest = gproji_fmax(largest, stride.largest[k]);
+    return largest;
+}
 
 GPROJI_INTERNAL void gproji_save(gproj_system *s) {
     if (s->variable_count) memcpy(s->vector.saved, s->x, (size_t)s->variable_count * sizeof *s->x);
@@ -11064,7 +11032,6 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         }
     }
     /* 2. The correction; one that is long beside the step is none. */
-    gproji_merit_gradient(s);
     gproji_solve_step(s);
     bends = gproji_step_square(s) <= gproji_bend_most * square;
     for (v = 0; v < s->variable_count; ++v) {
@@ -11456,19 +11423,6 @@ GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
 /* The stage in which safeguards give way now. */
 GPROJI_INTERNAL gproji_yielding gproji_yield_of(const gproj_system *s) { return s->yield; }
 
-/* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
-   are patient: they are made where this one has ended badly. */
-GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
-    double residual = loop->standing.residual;
-    if (loop->result.iterations < loop->watch.seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system))
-        return;
-    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen &&
-        loop->system->yield == GPROJI_YIELD_SLOWLY)
-        loop->system->yield = GPROJI_YIELD_FLOOR;
-    loop->watch.fallen = residual;
-    loop->watch.seen = loop->result.iterations;
-}
-
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11477,7 +11431,14 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
-        gproji_watch_fall(loop);
+        /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are patient:
+           they are made where this one has ended badly. */
+        if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
+            double residual = loop->standing.residual;
+            bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
+            if (creeps && loop->earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
+            loop->watch.fallen = residual, loop->watch.seen = loop->result.iterations;
+        }
         /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
            counts the iterations since the wishes have faded. */
         n = loop->result.iterations + 1;
@@ -11754,7 +11715,6 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
        phi + G dx, and y rises by it; wishes are served by the first one. */
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
     for (round = 0; round < rounds && left > 1e-12 * first; ++round) {
-        gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) sum[v] += s->vector.step[v];
         left = 0;
@@ -11892,7 +11852,6 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
     int32_t k, v;
     for (k = 0; k < GPROJI_NEAREST_RETRACT && now < 0.5 * before; ++k) {
         before = now;
-        gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) s->x[v] += s->vector.step[v];
         now = gproji_evaluate_constraints(s);
@@ -12507,7 +12466,6 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
             }
             if (first > 0) gproji_cholesky_descend(s->cholesky, motion);
             if (s->wide_count > 0 || base) {
-                gproji_merit_gradient(s);
                 wide = gproji_step_sides(s);
                 gproji_finish_step(s, wide, false);
             }
@@ -22396,21 +22354,6 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     }
 }
 
-/* Has the form forces, and a shape that carries, so that its faces need not turn over to do so? */
-GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
-    const gproji_statics *s = form->statics;
-    return s && gproji_is_on(form, s->group) && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
-}
-
-/* Notes the areas that the guarded faces have when a solve begins. */
-GPROJI_INTERNAL void gproji_begin_guard(const gproji_part *part) {
-    const gproj_form *form = part->form;
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
-                           gproji_guarded_areas(part) + 3 * (size_t)i);
-}
-
 /* ============================================================================================================
    >>corners   Faces keep their corners and edges. Uses platform, memory, error, vector, stream, system, loop, mesh,
    measure, form, catalogue, guard.
@@ -23622,7 +23565,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
 }
 
-/* Gives a group of the library's own its schedule; adds it, if it is missing and gets a weight. Returns the part; NULL:
+/* Sets the schedule for a group that the library adds itself: now, if it is missing and gets a weight. Returns the part; NULL:
    there is none, or the form has an error. */
 GPROJI_INTERNAL gproji_part *gproji_schedule_own(gproj_form *form, gproji_own own, gproj_schedule schedule) {
     gproji_part *part;
@@ -23729,9 +23672,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, whole, corners,
-         ending = false;
-    bool started = form->statics && form->statics->started;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
+    bool started = form->statics && form->statics->started, ending = false;
     const gproji_part *part;
     double largest = 0; /* weight of a caller's wish */
     int32_t guided, guiding, i;
@@ -23752,12 +23694,16 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
-    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. */
-    whole = !skip_guard && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. With
+       forces that is for a shape that carries, so that its faces need not turn over to do so. */
+    carries = forces && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
+    whole = !skip_guard && (gproji_is_on(form, form->planarity) || carries);
     part = gproji_schedule_own(form, GPROJI_OWN_GUARD,
                                gproj_fade(whole && !smooth ? gproji_guard_weight : 0,
                                           gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
-    if (part) gproji_begin_guard(part);
+    for (i = 0; part && i < part->count; ++i)
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
+                           gproji_guarded_areas(part) + 3 * (size_t)i);
     corners = whole && (smooth || (nearest && iterations > GPROJI_SAFE_MOST));
     part = gproji_schedule_own(form, GPROJI_OWN_CORNERS, gproj_keep(corners ? gproji_corner_weight : 0));
     if (part) gproji_begin_corners(part);
