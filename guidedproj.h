@@ -12080,10 +12080,11 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, doubl
         if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
             o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
             (o->time_budget > 0 && !s->host.clock.now))
-            gproji_fail(&refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
-                        "and a time budget needs a clock in the host",
-                        iterations, o->tolerance, o->epsilon, o->time_budget);
+            gproji_refuse(
+                &refused,
+                "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
+                "and a time budget needs a clock in the host",
+                iterations, o->tolerance, o->epsilon, o->time_budget);
         else if (gproji_values_are_valid(s)) {
             s->stiffness = loop->stiff ? stiffness : 0, s->anchored = anchored;
             return true;
@@ -21247,21 +21248,6 @@ static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_fo
 /* Given forces are scaled to 1 if they are at least this part of those that the loads ask for. */
 static const double gproji_least_force = 1e-4;
 
-/* The factors from the caller's loads to other units. */
-typedef struct gproji_load_units {
-    double force, per_length, per_area;
-} gproji_load_units;
-
-static const gproji_load_units gproji_caller_loads = {1, 1, 1};
-
-GPROJI_INTERNAL gproji_load_units gproji_internal_loads(const gproj_form *form) {
-    gproji_load_units units;
-    units.force = form->statics->load_scale;
-    units.per_length = units.force / form->scale;
-    units.per_area = units.per_length / form->scale;
-    return units;
-}
-
 GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
     return loads->edge_density ? loads->edge_density[edge] : loads->density;
 }
@@ -21283,23 +21269,25 @@ GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_load
     return gproji_dot3(h, area);
 }
 
-/* The load on each vertex at positions x, 3 numbers each. The sign of gravity, -z, is here and in the rows, see
+/* The load on each vertex at positions x, 3 numbers each, where lengths are `scale` and forces `force` times those of
+   the caller. The sign of gravity, -z, is here and in the rows, see
    gproji_linearise_weight and gproji_refresh_equilibrium. */
-GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, gproji_load_units units,
+GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, double force, double scale,
                                      const double *x, double *out) {
+    double per_length = force / scale, per_area = per_length / scale;
     int32_t v, e, f, c, k;
     for (v = 0; v < mesh->vertex_count; ++v)
         for (k = 0; k < 3; ++k)
             out[3 * (size_t)v + (size_t)k] =
-                loads->point_load ? units.force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
+                loads->point_load ? force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
     for (e = 0; e < mesh->edge_count; ++e) {
-        double half = 0.5 * units.per_length * gproji_density(loads, e) * gproji_edge_length(mesh, x, e);
+        double half = 0.5 * per_length * gproji_density(loads, e) * gproji_edge_length(mesh, x, e);
         out[3 * (size_t)mesh->origin[2 * e] + 2] -= half;
         out[3 * (size_t)mesh->origin[2 * e + 1] + 2] -= half;
     }
     if (!gproji_areas_weigh(loads)) return;
     for (f = 0; f < mesh->face_count; ++f) {
-        double h[3], part = units.per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
+        double h[3], part = per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
         int32_t corner = mesh->face_halfedge[f];
         for (c = 0; c < mesh->face_degree[f]; ++c, corner = mesh->next[corner])
             out[3 * (size_t)mesh->origin[corner] + 2] -= part;
@@ -21372,20 +21360,20 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     gproji_statics *s = form->statics;
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(system), *point = s->loads.point_load;
-    gproji_load_units units = gproji_internal_loads(form);
+    double force = s->load_scale, per_length = force / form->scale, per_area = per_length / form->scale;
     int32_t f, v, c, row = 0;
     (void)progress;
     /* A face's corners have equal shares: load[0..3) is -h / 2, load[3] the value. */
     for (f = 0; s->face_load && f < mesh->face_count; ++f) {
-        double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
+        double h[3], scale = per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
         load[3] = scale * gproji_face_load(mesh, &s->loads, x, f, h);
         for (c = 0; c < 3; ++c) load[c] = -0.5 * scale * h[c];
     }
     for (v = 0; v < mesh->vertex_count; ++v) {
         for (c = 0; c < 3; ++c) {
-            double constant = point ? units.force * point[3 * (size_t)v + (size_t)c] : 0;
+            double constant = point ? force * point[3 * (size_t)v + (size_t)c] : 0;
             if (!(s->axes[v] >> c & 1)) continue;
-            if (c == 2) constant = gproji_linearise_weight(form, x, units.per_length, v, constant);
+            if (c == 2) constant = gproji_linearise_weight(form, x, per_length, v, constant);
             gproj_system_set_row(system, group, row++, NULL, constant);
         }
     }
@@ -21608,9 +21596,7 @@ GPROJI_INTERNAL gproj_code gproji_need_statics(const gproj_form *form, const cha
 GPROJI_INTERNAL gproj_code gproji_begin_question(const gproj_form *form, const char *name, bool has_array,
                                                  gproj_error *error) {
     gproji_error_clear(error);
-    if (!form || !has_array)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: there is no %s", name,
-                           form ? "array for it" : "form");
+    if (!form || !has_array) return gproji_refuse(error, "%s: there is no %s", name, form ? "array for it" : "form");
     return gproji_form_ready(form) ? GPROJ_OK : gproji_pass_on(error, gproj_form_error(form));
 }
 
@@ -21773,9 +21759,8 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
     int32_t count = (int32_t)g->row[row].terms, edge = g->row[row].element;
     const gproj_term *term = g->term + g->row[row].term; /* which a caller's rows may share */
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
-    if (count != 1 || term->j >= 0) return -1;
+    if (count != 1 || term->j >= 0 || g->row[row].constant != 0) return -1;
     if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
-    if (g->row[row].constant != 0) return -1;
     *sign = term->a;
     return edge;
 }
@@ -21843,10 +21828,10 @@ GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *lo
     return count ? sum / count : 0;
 }
 
-/* p->load at positions x; returns their mean, -1 after an error. */
-GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units units, const double *x, gproji_balance *p) {
+/* p->load at positions x, of which `scale` are a length of the caller's; returns their mean, -1 after an error. */
+GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, double scale, const double *x, gproji_balance *p) {
     double mean;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
+    gproji_loads_at(form->mesh, &form->statics->loads, 1, scale, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
     return gproji_none(gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
@@ -21956,7 +21941,7 @@ GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, do
         !gproji_take_balance(form, error, &p))
         return;
     /* Loads relative to their mean make the problem independent of units. */
-    mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
+    mean = gproji_set_loads(form, 1, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
     x = form->statics->work;
     for (v = 0; v < form->mesh->vertex_count; ++v)
@@ -22041,10 +22026,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     bool uniform = false;
     /* 1. Scale the loads to mean 1. */
     s->load_scale = 1;
-    size = gproji_set_loads(form, gproji_internal_loads(form), x, p);
+    size = gproji_set_loads(form, form->scale, x, p);
     if (size < 0) return false;
     if (size > 0) s->load_scale = 1 / size;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    gproji_loads_at(form->mesh, &s->loads, s->load_scale, form->scale, x, p->load);
     /* 2. A typical force: tension if most edges are bound to it, else compression. */
     gproji_force_sides(form, p->lower, p->upper);
     for (e = 0; e < form->mesh->edge_count; ++e) {
@@ -22116,7 +22101,7 @@ GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gpro
     if (code == GPROJ_OK) code = gproji_need_statics(form, "get loads", error);
     if (code == GPROJ_OK && !gproji_positions_are_finite(form, error)) code = GPROJ_ERROR_NUMBER;
     if (code) return code;
-    gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
+    gproji_loads_at(form->mesh, &form->statics->loads, 1, 1, form->mesh->position, loads);
     count = 3 * form->mesh->vertex_count;
     for (i = 0; i < count && gproji_is_finite(loads[i]); ++i) continue;
     if (i == count) return GPROJ_OK;
@@ -22814,39 +22799,42 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 
 /* -- demands that can never hold -- */
 
-/* Marks coordinates that a constraint prescribes by a row with a single term, and those of corners that a gliding
-   boundary keeps: held[i] = 1, value[i] the prescribed value; others of vertices that glide: held[i] = -1; else both
-   are 0. Returns the number of vertices with three prescribed coordinates. */
-GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
-    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
+/* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are corners
+   that a gliding boundary keeps. kept: 1 for these, -1 for others that glide, else 0; value: the prescribed coordinates,
+   else 0. Returns how many stay. */
+GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, int32_t *kept, double *value) {
+    const int32_t glides = 8; /* in `kept` at first, beside a bit for each prescribed coordinate */
+    int32_t vertices = form->mesh->vertex_count, i, r, v, count = 0;
     const gproji_part *part;
-    memset(held, 0, (size_t)coordinates * sizeof *held);
-    memset(value, 0, (size_t)coordinates * sizeof *value);
+    memset(kept, 0, (size_t)vertices * sizeof *kept);
+    memset(value, 0, 3 * (size_t)vertices * sizeof *value);
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const gproj_term *term = g->term + row->term;
-            int32_t v;
             if (row->terms != 1 || !(row->weight > 0) || term->j >= 0 || term->a == 0) continue;
             v = gproji_variable_of(g, row, term->i);
-            if (v >= coordinates) continue;
-            held[v] = 1;
+            if (v >= 3 * vertices) continue;
+            kept[v / 3] |= 1 << v % 3;
             value[v] = -row->constant / term->a;
         }
     }
     for (part = form->part; part; part = part->next) {
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            size_t v = 3 * (size_t)part->element[i], c;
             bool corner = !gproji_curve_at(part, i);
             if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
-            if (corner) gproji_copy3(form->original + v, value + v);
-            for (c = v; c < v + 3; ++c) held[c] = corner ? 1 : held[c] == 0 ? -1 : held[c];
+            v = part->element[i];
+            if (corner) gproji_copy3(form->original + 3 * (size_t)v, value + 3 * (size_t)v);
+            kept[v] |= corner ? GPROJI_AXES : glides;
         }
     }
-    for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
+    for (v = 0; v < vertices; ++v) {
+        kept[v] = (kept[v] & GPROJI_AXES) == GPROJI_AXES ? 1 : kept[v] & glides ? -1 : 0;
+        count += kept[v] > 0;
+    }
     return count;
 }
 
@@ -22870,14 +22858,14 @@ GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], doubl
 
 /* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
    fan; *count: how many there are. 0 if they lie along a line. */
-GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
+GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const int32_t *kept, const double *value, int32_t face,
                                         int32_t *count) {
     double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
     const double *first = NULL;
     int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
     for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
         size_t v = 3 * (size_t)mesh->origin[h];
-        if (held[v] + held[v + 1] + held[v + 2] < 3) continue;
+        if (kept[mesh->origin[h]] <= 0) continue;
         if (!first) first = value + v;
         gproji_sub3(value + v, first, offset[held_count++]);
     }
@@ -23135,9 +23123,9 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
    alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
-    int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
-    int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
+    double *value = gproji_spare(form->system, 1), worst = 0;
+    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
+    int32_t r, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, kept, value);
     bool planar = gproji_is_on(form, form->planarity), whole = planar;
     const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
     for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
@@ -23146,7 +23134,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         whole = whole && g->row[r].weight > 0;
         if (!(g->row[r].weight > 0) || f == previous) continue;
         previous = f;
-        bend = gproji_held_bend(form->mesh, held, value, f, &count);
+        bend = gproji_held_bend(form->mesh, kept, value, f, &count);
         if (!(bend > noticeable)) continue;
         ++bent;
         if (bend > worst) worst = bend, face = f, corners = count;
@@ -23164,11 +23152,6 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         memset(&spread, 0, sizeof spread);
         spread.form = form, spread.kept = kept, spread.value = value;
         spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
-        for (v = 0; v < vertices; ++v) { /* in place: three integers a vertex where three numbers were */
-            const double *of = held + 3 * (size_t)v;
-            bool stays = of[0] + of[1] + of[2] == 3, glides = of[0] < 0 || of[1] < 0 || of[2] < 0;
-            kept[v] = stays ? 1 : glides ? -1 : 0;
-        }
         memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
         if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
     }
@@ -23273,7 +23256,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
     /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
     loads = &s->loads, load = s->work;
-    gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
+    gproji_loads_at(form->mesh, loads, s->load_scale, form->scale, gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
     g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
