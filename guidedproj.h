@@ -7896,7 +7896,7 @@ struct gproj_system {
     gproj_progress progress;
     double stiffness;      /* in steps: factor on the weights of metric groups; 0: they rest */
     bool anchored;         /* metric groups measure the way from where the solve began, not the step alone */
-    gproji_yielding yield; /* in this solve: see gproji_watch_fall and gproji_let_safeguards_yield */
+    gproji_yielding yield; /* in this solve: see gproji_run_loop and gproji_let_safeguards_yield */
     double rounding;       /* tolerated rounding in a row's value; 0: as little as can be */
     double *x;
     gproji_blocks blocks;
@@ -9086,20 +9086,6 @@ GPROJI_INTERNAL void gproji_row_add(const gproji_group *g, const gproji_row *row
     for (l = 0; l < count; ++l) out[variable[l]] += scale * gradient[l];
 }
 
-/* gradient = sum w^2 phi grad phi over narrow rows that act: half their merit's gradient. */
-GPROJI_INTERNAL void gproji_merit_gradient(gproj_system *s) {
-    int32_t i, r;
-    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
-            const gproji_row *row = &g->row[r];
-            if (!row->wide && row->active)
-                gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->vector.gradient);
-        }
-    }
-}
-
 /* -- the matrix -- */
 
 /* Arguments for loading fronts: A = sum w^2 g g' + eps^2 I over the narrow rows that act, and, nearest, their curvature
@@ -9189,7 +9175,8 @@ GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
     return s->vector.sides + (int64_t)s->variable_count * (index + 1);
 }
 
-/* Writes the columns of U; only their first n numbers count. Returns how many dense rows act. */
+/* Writes the columns of U, of which only the first n numbers count, and wide.vector = w phi. Returns how many dense
+   rows act. */
 GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     gproji_row_name at = {0, -1};
     const gproji_row *row;
@@ -9197,8 +9184,9 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     while ((row = gproji_next_wide_row(s, &at)) != NULL) {
         const gproji_group *g = &s->group[at.group];
         const double *gradient = g->local.gradient + row->local;
-        double *out = gproji_wide_side(s, count++), scale = sqrt(gproji_weight2(g, row));
+        double *out = gproji_wide_side(s, count), scale = sqrt(gproji_weight2(g, row));
         size_t first, end, v;
+        s->wide.vector[count++] = scale * row->phi;
         if (!row->contiguous) {
             memset(out, 0, n * sizeof *out);
             gproji_row_add(g, row, scale, out);
@@ -9214,16 +9202,6 @@ GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
     return count;
 }
 
-/* wide.vector = w phi. */
-GPROJI_INTERNAL void gproji_wide_values(gproj_system *s) {
-    gproji_row_name at = {0, -1};
-    const gproji_row *row;
-    int32_t index = 0;
-    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        s->wide.vector[index++] = sqrt(gproji_weight2(&s->group[at.group], row)) * row->phi;
-    }
-}
-
 /* z becomes z - Y m; wide.vector: (I + Y'Y) m without Y'z, which becomes m. */
 GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide, double *z) {
     size_t n = (size_t)s->variable_count, i;
@@ -9237,9 +9215,19 @@ GPROJI_INTERNAL void gproji_wide_correct(gproj_system *s, int32_t wide, double *
     }
 }
 
-/* Writes a step's right-hand sides, -gradient and U. Returns how many dense rows act. */
+/* Writes a step's right-hand sides, -gradient and U, the gradient = sum w^2 phi grad phi being over narrow rows that
+   act: half their merit's. Returns how many dense rows act. */
 GPROJI_INTERNAL int32_t gproji_step_sides(gproj_system *s) {
-    int32_t v;
+    int32_t i, r, v;
+    memset(s->vector.gradient, 0, (size_t)s->variable_count * sizeof *s->vector.gradient);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            if (!row->wide && row->active)
+                gproji_row_add(g, row, gproji_weight2(g, row) * row->phi, s->vector.gradient);
+        }
+    }
     for (v = 0; v < s->variable_count; ++v) s->vector.step[v] = -s->vector.gradient[v];
     return gproji_wide_columns(s, (size_t)s->variable_count);
 }
@@ -9266,7 +9254,6 @@ GPROJI_INTERNAL void gproji_finish_step(gproj_system *s, int32_t wide, bool take
                     gproji_dot(gproji_wide_side(s, i), gproji_wide_side(s, k), n) + (k == i);
         gproji_small_factor(s->wide.matrix, wide, s->wide_count, 1);
         /* 3. z - Y m. */
-        gproji_wide_values(s);
         gproji_wide_correct(s, wide, s->vector.step);
     }
     gproji_cholesky_backward(c, s->vector.step, s->vector.step);
@@ -10249,7 +10236,6 @@ GPROJI_INTERNAL void gproji_schur_border(gproj_system *s, double *z) {
     size_t n = (size_t)s->wide.kept, multipliers = (size_t)d->first[d->elements], j;
     int32_t i, k;
     /* I + U'U - Y'Y, and w phi + U'b - Y'z: y is eliminated. */
-    gproji_wide_values(s);
     for (i = 0; i < s->wide.acting; ++i) {
         const double *y = z + (size_t)(i + 1) * multipliers, *u = gproji_wide_side(s, i);
         for (k = 0; k <= i; ++k)
@@ -10469,7 +10455,7 @@ enum {
     GPROJI_BALANCE_ITERATIONS = 20, /* without wishes; earlier, constraints may be in balance in passing */
     GPROJI_WARY = 4,                /* iterations with a cautious stiffness after a step has failed or was short */
     GPROJI_LINE_SAMPLES = 40,
-    GPROJI_PASS_TASKS = 64,          /* at most */
+    GPROJI_STEP_TASKS = 64,          /* at most */
     GPROJI_VARIABLES_PER_TASK = 4096 /* at least, unless there are fewer */
 };
 
@@ -10666,64 +10652,17 @@ GPROJI_INTERNAL gproji_standing gproji_take_standing(gproj_system *s) {
     return standing;
 }
 
-/* A pass over all variables, by several threads. */
-typedef struct gproji_pass {
-    gproj_system *system;
-    double t;
-    int32_t tasks;
-    double largest[GPROJI_PASS_TASKS]; /* found by each task; infinite if it met a NaN */
-} gproji_pass;
-
-/* Makes the pass; returns the largest number found. */
-GPROJI_INTERNAL double gproji_pass_over(gproj_system *s, double t, gproj_task task) {
-    gproji_pass pass;
-    double largest = 0;
-    int32_t k;
-    pass.system = s, pass.t = t;
-    pass.tasks = gproji_max(1, gproji_min(GPROJI_PASS_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
-    gproji_for(&s->host.parallel, pass.tasks, task, &pass);
-    for (k = 0; k < pass.tasks; ++k) largest = gproji_fmax(largest, pass.largest[k]);
-    return largest;
-}
-
-/* max |x| */
-GPROJI_INTERNAL void gproji_extent_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    const gproj_system *s = pass->system;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    double largest = 0;
-    for (; v < end; ++v)
-        if (!(fabs(s->x[v]) <= largest)) largest = gproji_magnitude(s->x[v]);
-    pass->largest[task] = largest;
-}
-
-/* x = saved + t dx; the largest |t dx| */
-GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
-    gproji_pass *pass = (gproji_pass *)data;
-    gproj_system *s = pass->system;
-    const double *step = s->vector.step, *saved = s->vector.saved;
-    double *x = s->x, t = pass->t, largest = 0;
-    int32_t v = gproji_chunk_start(s->variable_count, pass->tasks, task);
-    int32_t end = gproji_chunk_start(s->variable_count, pass->tasks, task + 1);
-    for (; v < end; ++v) {
-        double d = t * step[v];
-        x[v] = saved[v] + d;
-        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
-    }
-    pass->largest[task] = largest;
-}
-
 /* The caller's tolerance, or the residual that rounding allows at this x. */
 GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     gproj_system *s = loop->system;
-    double tolerance, extent, named = -1;
+    double tolerance, extent = 0, named = -1;
     bool large;
     int64_t l;
     int32_t i, r;
     if (loop->options.tolerance > 0) return loop->options.tolerance;
     /* 1. Rounding of single variables. A stray one that no constraint or bound names must not raise it. */
-    extent = gproji_pass_over(s, 0, gproji_extent_task);
+    for (i = 0; i < s->variable_count; ++i)
+        if (!(fabs(s->x[i]) <= extent)) extent = gproji_magnitude(s->x[i]);
     large = 8 * DBL_EPSILON * extent > 1e-11;
     for (i = 0; large && i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
@@ -10805,10 +10744,7 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     gproj_system *s = loop->system;
     int32_t wide, sides;
     bool by_multipliers = s->schur.on, factored;
-    if (by_multipliers)
-        gproji_schur_assemble(s, epsilon);
-    else
-        gproji_merit_gradient(s);
+    if (by_multipliers) gproji_schur_assemble(s, epsilon);
     wide = by_multipliers ? s->wide.acting : gproji_step_sides(s);
     gproji_lap(loop, GPROJ_PHASE_ASSEMBLE);
     sides = wide < s->cholesky->batch ? wide + 1 : 0; /* go through the fronts while these are in the cache */
@@ -10826,8 +10762,40 @@ GPROJI_INTERNAL bool gproji_find_step(gproji_loop *loop, double epsilon) {
     return true;
 }
 
+/* Part of a step that several threads take. */
+typedef struct gproji_stride {
+    gproj_system *system;
+    double t;
+    int32_t tasks;
+    double largest[GPROJI_STEP_TASKS]; /* |t dx| in each task; infinite if it met a NaN */
+} gproji_stride;
+
+GPROJI_INTERNAL void gproji_step_task(void *data, int32_t task) {
+    gproji_stride *stride = (gproji_stride *)data;
+    gproj_system *s = stride->system;
+    const double *step = s->vector.step, *saved = s->vector.saved;
+    double *x = s->x, t = stride->t, largest = 0;
+    int32_t v = gproji_chunk_start(s->variable_count, stride->tasks, task);
+    int32_t end = gproji_chunk_start(s->variable_count, stride->tasks, task + 1);
+    for (; v < end; ++v) {
+        double d = t * step[v];
+        x[v] = saved[v] + d;
+        if (!(fabs(d) <= largest)) largest = gproji_magnitude(d);
+    }
+    stride->largest[task] = largest;
+}
+
 /* x = saved + t dx; returns the largest |t dx|, infinite if it is not a number. */
-GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) { return gproji_pass_over(s, t, gproji_step_task); }
+GPROJI_INTERNAL double gproji_take_step(gproj_system *s, double t) {
+    gproji_stride stride;
+    double largest = 0;
+    int32_t k;
+    stride.system = s, stride.t = t;
+    stride.tasks = gproji_max(1, gproji_min(GPROJI_STEP_TASKS, s->variable_count / GPROJI_VARIABLES_PER_TASK));
+    gproji_for(&s->host.parallel, stride.tasks, gproji_step_task, &stride);
+    for (k = 0; k < stride.tasks; ++k) largest = gproji_fmax(largest, stride.largest[k]);
+    return largest;
+}
 
 GPROJI_INTERNAL void gproji_save(gproj_system *s) {
     if (s->variable_count) memcpy(s->vector.saved, s->x, (size_t)s->variable_count * sizeof *s->x);
@@ -11001,7 +10969,6 @@ GPROJI_INTERNAL double gproji_bend_step(gproji_loop *loop, const gproji_course *
         }
     }
     /* 2. The correction; one that is long beside the step is none. */
-    gproji_merit_gradient(s);
     gproji_solve_step(s);
     bends = gproji_step_square(s) <= gproji_bend_most * square;
     for (v = 0; v < s->variable_count; ++v) {
@@ -11393,19 +11360,6 @@ GPROJI_INTERNAL bool gproji_let_safeguards_yield(gproji_loop *loop) {
 /* The stage in which safeguards give way now. */
 GPROJI_INTERNAL gproji_yielding gproji_yield_of(const gproj_system *s) { return s->yield; }
 
-/* Looks now and then at how far the residual has fallen since the last look, once the wishes have faded. Later attempts
-   are patient: they are made where this one has ended badly. */
-GPROJI_INTERNAL void gproji_watch_fall(gproji_loop *loop) {
-    double residual = loop->standing.residual;
-    if (loop->result.iterations < loop->watch.seen + GPROJI_CREEP_ITERATIONS || gproji_wishes_are_on(loop->system))
-        return;
-    if (loop->earlier == 0 && residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen &&
-        loop->system->yield == GPROJI_YIELD_SLOWLY)
-        loop->system->yield = GPROJI_YIELD_FLOOR;
-    loop->watch.fallen = residual;
-    loop->watch.seen = loop->result.iterations;
-}
-
 /* The iterations; returns how they ended. */
 GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     gproj_system *s = loop->system;
@@ -11414,7 +11368,14 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
-        gproji_watch_fall(loop);
+        /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are patient:
+           they are made where this one has ended badly. */
+        if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
+            double residual = loop->standing.residual;
+            bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
+            if (creeps && loop->earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
+            loop->watch.fallen = residual, loop->watch.seen = loop->result.iterations;
+        }
         /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
            counts the iterations since the wishes have faded. */
         n = loop->result.iterations + 1;
@@ -11691,7 +11652,6 @@ GPROJI_INTERNAL bool gproji_find_slide(gproji_loop *loop, bool curved, double sh
        phi + G dx, and y rises by it; wishes are served by the first one. */
     memset(sum, 0, (size_t)s->variable_count * sizeof *sum);
     for (round = 0; round < rounds && left > 1e-12 * first; ++round) {
-        gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) sum[v] += s->vector.step[v];
         left = 0;
@@ -11829,7 +11789,6 @@ GPROJI_INTERNAL void gproji_retract(gproj_system *s) {
     int32_t k, v;
     for (k = 0; k < GPROJI_NEAREST_RETRACT && now < 0.5 * before; ++k) {
         before = now;
-        gproji_merit_gradient(s);
         gproji_solve_step(s);
         for (v = 0; v < s->variable_count; ++v) s->x[v] += s->vector.step[v];
         now = gproji_evaluate_constraints(s);
@@ -12058,10 +12017,11 @@ GPROJI_INTERNAL bool gproji_begin_loop(gproji_loop *loop, gproj_system *s, doubl
         if (iterations < 0 || !gproji_is_finite(o->tolerance) || o->tolerance < 0 || !gproji_is_finite(o->epsilon) ||
             o->epsilon < 0 || !gproji_is_finite(o->time_budget) || o->time_budget < 0 ||
             (o->time_budget > 0 && !s->host.clock.now))
-            gproji_fail(&refused, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
-                        "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
-                        "and a time budget needs a clock in the host",
-                        iterations, o->tolerance, o->epsilon, o->time_budget);
+            gproji_refuse(
+                &refused,
+                "solve: %d iterations, tolerance %g, epsilon %g, time budget %g: all must be finite and >= 0, "
+                "and a time budget needs a clock in the host",
+                iterations, o->tolerance, o->epsilon, o->time_budget);
         else if (gproji_values_are_valid(s)) {
             s->stiffness = loop->stiff ? stiffness : 0, s->anchored = anchored;
             return true;
@@ -12444,7 +12404,6 @@ GPROJI_INTERNAL bool gproji_project(gproj_system *s, const gproji_tangent *how, 
             }
             if (first > 0) gproji_cholesky_descend(s->cholesky, motion);
             if (s->wide_count > 0 || base) {
-                gproji_merit_gradient(s);
                 wide = gproji_step_sides(s);
                 gproji_finish_step(s, wide, false);
             }
@@ -21233,21 +21192,6 @@ static const double gproji_force_thrust = 4, gproji_force_part = 0.75, gproji_fo
 /* Given forces are scaled to 1 if they are at least this part of those that the loads ask for. */
 static const double gproji_least_force = 1e-4;
 
-/* The factors from the caller's loads to other units. */
-typedef struct gproji_load_units {
-    double force, per_length, per_area;
-} gproji_load_units;
-
-static const gproji_load_units gproji_caller_loads = {1, 1, 1};
-
-GPROJI_INTERNAL gproji_load_units gproji_internal_loads(const gproj_form *form) {
-    gproji_load_units units;
-    units.force = form->statics->load_scale;
-    units.per_length = units.force / form->scale;
-    units.per_area = units.per_length / form->scale;
-    return units;
-}
-
 GPROJI_INLINE double gproji_density(const gproj_loads *loads, int32_t edge) {
     return loads->edge_density ? loads->edge_density[edge] : loads->density;
 }
@@ -21269,23 +21213,25 @@ GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_load
     return gproji_dot3(h, area);
 }
 
-/* The load on each vertex at positions x, 3 numbers each. The sign of gravity, -z, is here and in the rows, see
+/* The load on each vertex at positions x, 3 numbers each, where lengths are `scale` and forces `force` times those of
+   the caller. The sign of gravity, -z, is here and in the rows, see
    gproji_linearise_weight and gproji_refresh_equilibrium. */
-GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, gproji_load_units units,
+GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, double force, double scale,
                                      const double *x, double *out) {
+    double per_length = force / scale, per_area = per_length / scale;
     int32_t v, e, f, c, k;
     for (v = 0; v < mesh->vertex_count; ++v)
         for (k = 0; k < 3; ++k)
             out[3 * (size_t)v + (size_t)k] =
-                loads->point_load ? units.force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
+                loads->point_load ? force * loads->point_load[3 * (size_t)v + (size_t)k] : 0;
     for (e = 0; e < mesh->edge_count; ++e) {
-        double half = 0.5 * units.per_length * gproji_density(loads, e) * gproji_edge_length(mesh, x, e);
+        double half = 0.5 * per_length * gproji_density(loads, e) * gproji_edge_length(mesh, x, e);
         out[3 * (size_t)mesh->origin[2 * e] + 2] -= half;
         out[3 * (size_t)mesh->origin[2 * e + 1] + 2] -= half;
     }
     if (!gproji_areas_weigh(loads)) return;
     for (f = 0; f < mesh->face_count; ++f) {
-        double h[3], part = units.per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
+        double h[3], part = per_area * gproji_face_load(mesh, loads, x, f, h) / mesh->face_degree[f];
         int32_t corner = mesh->face_halfedge[f];
         for (c = 0; c < mesh->face_degree[f]; ++c, corner = mesh->next[corner])
             out[3 * (size_t)mesh->origin[corner] + 2] -= part;
@@ -21358,20 +21304,20 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
     gproji_statics *s = form->statics;
     const gproj_mesh *mesh = form->mesh;
     const double *x = gproj_system_values(system), *point = s->loads.point_load;
-    gproji_load_units units = gproji_internal_loads(form);
+    double force = s->load_scale, per_length = force / form->scale, per_area = per_length / form->scale;
     int32_t f, v, c, row = 0;
     (void)progress;
     /* A face's corners have equal shares: load[0..3) is -h / 2, load[3] the value. */
     for (f = 0; s->face_load && f < mesh->face_count; ++f) {
-        double h[3], scale = units.per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
+        double h[3], scale = per_area / mesh->face_degree[f], *load = s->face_load + 4 * (size_t)f;
         load[3] = scale * gproji_face_load(mesh, &s->loads, x, f, h);
         for (c = 0; c < 3; ++c) load[c] = -0.5 * scale * h[c];
     }
     for (v = 0; v < mesh->vertex_count; ++v) {
         for (c = 0; c < 3; ++c) {
-            double constant = point ? units.force * point[3 * (size_t)v + (size_t)c] : 0;
+            double constant = point ? force * point[3 * (size_t)v + (size_t)c] : 0;
             if (!(s->axes[v] >> c & 1)) continue;
-            if (c == 2) constant = gproji_linearise_weight(form, x, units.per_length, v, constant);
+            if (c == 2) constant = gproji_linearise_weight(form, x, per_length, v, constant);
             gproj_system_set_row(system, group, row++, NULL, constant);
         }
     }
@@ -21594,9 +21540,7 @@ GPROJI_INTERNAL gproj_code gproji_need_statics(const gproj_form *form, const cha
 GPROJI_INTERNAL gproj_code gproji_begin_question(const gproj_form *form, const char *name, bool has_array,
                                                  gproj_error *error) {
     gproji_error_clear(error);
-    if (!form || !has_array)
-        return gproji_fail(error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s: there is no %s", name,
-                           form ? "array for it" : "form");
+    if (!form || !has_array) return gproji_refuse(error, "%s: there is no %s", name, form ? "array for it" : "form");
     return gproji_form_ready(form) ? GPROJ_OK : gproji_pass_on(error, gproj_form_error(form));
 }
 
@@ -21759,9 +21703,8 @@ GPROJI_INTERNAL int32_t gproji_bounded_force(const gproj_form *form, int32_t gro
     int32_t count = (int32_t)g->row[row].terms, edge = g->row[row].element;
     const gproj_term *term = g->term + g->row[row].term; /* which a caller's rows may share */
     if (edge < 0 || edge >= form->mesh->edge_count || form->statics->force[edge] < 0) return -1;
-    if (count != 1 || term->j >= 0) return -1;
+    if (count != 1 || term->j >= 0 || g->row[row].constant != 0) return -1;
     if (gproji_variable_of(g, &g->row[row], term->i) != form->statics->force[edge]) return -1;
-    if (g->row[row].constant != 0) return -1;
     *sign = term->a;
     return edge;
 }
@@ -21829,10 +21772,10 @@ GPROJI_INTERNAL double gproji_mean_load(const gproj_form *form, const double *lo
     return count ? sum / count : 0;
 }
 
-/* p->load at positions x; returns their mean, -1 after an error. */
-GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, gproji_load_units units, const double *x, gproji_balance *p) {
+/* p->load at positions x, of which `scale` are a length of the caller's; returns their mean, -1 after an error. */
+GPROJI_INTERNAL double gproji_set_loads(gproj_form *form, double scale, const double *x, gproji_balance *p) {
     double mean;
-    gproji_loads_at(form->mesh, &form->statics->loads, units, x, p->load);
+    gproji_loads_at(form->mesh, &form->statics->loads, 1, scale, x, p->load);
     mean = gproji_mean_load(form, p->load);
     if (gproji_is_finite(mean)) return mean;
     return gproji_none(gproji_fail(p->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
@@ -21942,7 +21885,7 @@ GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, do
         !gproji_take_balance(form, error, &p))
         return;
     /* Loads relative to their mean make the problem independent of units. */
-    mean = gproji_set_loads(form, gproji_caller_loads, form->mesh->position, &p);
+    mean = gproji_set_loads(form, 1, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
     x = form->statics->work;
     for (v = 0; v < form->mesh->vertex_count; ++v)
@@ -22027,10 +21970,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
     bool uniform = false;
     /* 1. Scale the loads to mean 1. */
     s->load_scale = 1;
-    size = gproji_set_loads(form, gproji_internal_loads(form), x, p);
+    size = gproji_set_loads(form, form->scale, x, p);
     if (size < 0) return false;
     if (size > 0) s->load_scale = 1 / size;
-    gproji_loads_at(form->mesh, &s->loads, gproji_internal_loads(form), x, p->load);
+    gproji_loads_at(form->mesh, &s->loads, s->load_scale, form->scale, x, p->load);
     /* 2. A typical force: tension if most edges are bound to it, else compression. */
     gproji_force_sides(form, p->lower, p->upper);
     for (e = 0; e < form->mesh->edge_count; ++e) {
@@ -22102,7 +22045,7 @@ GPROJ_API gproj_code gproj_get_loads(const gproj_form *form, double *loads, gpro
     if (code == GPROJ_OK) code = gproji_need_statics(form, "get loads", error);
     if (code == GPROJ_OK && !gproji_positions_are_finite(form, error)) code = GPROJ_ERROR_NUMBER;
     if (code) return code;
-    gproji_loads_at(form->mesh, &form->statics->loads, gproji_caller_loads, form->mesh->position, loads);
+    gproji_loads_at(form->mesh, &form->statics->loads, 1, 1, form->mesh->position, loads);
     count = 3 * form->mesh->vertex_count;
     for (i = 0; i < count && gproji_is_finite(loads[i]); ++i) continue;
     if (i == count) return GPROJ_OK;
@@ -22338,21 +22281,6 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
         }
         gproji_add_row(form->system, part->group, terms, term, -gproji_guard_wanted, f);
     }
-}
-
-/* Has the form forces, and a shape that carries, so that its faces need not turn over to do so? */
-GPROJI_INTERNAL bool gproji_carries(const gproj_form *form) {
-    const gproji_statics *s = form->statics;
-    return s && gproji_is_on(form, s->group) && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
-}
-
-/* Notes the areas that the guarded faces have when a solve begins. */
-GPROJI_INTERNAL void gproji_begin_guard(const gproji_part *part) {
-    const gproj_form *form = part->form;
-    int32_t i;
-    for (i = 0; i < part->count; ++i)
-        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
-                           gproji_guarded_areas(part) + 3 * (size_t)i);
 }
 
 /* ============================================================================================================
@@ -22815,39 +22743,42 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 
 /* -- demands that can never hold -- */
 
-/* Marks coordinates that a constraint prescribes by a row with a single term, and those of corners that a gliding
-   boundary keeps: held[i] = 1, value[i] the prescribed value; others of vertices that glide: held[i] = -1; else both
-   are 0. Returns the number of vertices with three prescribed coordinates. */
-GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, double *value) {
-    int32_t coordinates = 3 * form->mesh->vertex_count, i, r, count = 0;
+/* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are corners
+   that a gliding boundary keeps. kept: 1 for these, -1 for others that glide, else 0; value: the prescribed coordinates,
+   else 0. Returns how many stay. */
+GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, int32_t *kept, double *value) {
+    const int32_t glides = 8; /* in `kept` at first, beside a bit for each prescribed coordinate */
+    int32_t vertices = form->mesh->vertex_count, i, r, v, count = 0;
     const gproji_part *part;
-    memset(held, 0, (size_t)coordinates * sizeof *held);
-    memset(value, 0, (size_t)coordinates * sizeof *value);
+    memset(kept, 0, (size_t)vertices * sizeof *kept);
+    memset(value, 0, 3 * (size_t)vertices * sizeof *value);
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         if (g->kind != GPROJ_CONSTRAINT || !(g->schedule.weight > 0)) continue;
         for (r = 0; r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const gproj_term *term = g->term + row->term;
-            int32_t v;
             if (row->terms != 1 || !(row->weight > 0) || term->j >= 0 || term->a == 0) continue;
             v = gproji_variable_of(g, row, term->i);
-            if (v >= coordinates) continue;
-            held[v] = 1;
+            if (v >= 3 * vertices) continue;
+            kept[v / 3] |= 1 << v % 3;
             value[v] = -row->constant / term->a;
         }
     }
     for (part = form->part; part; part = part->next) {
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            size_t v = 3 * (size_t)part->element[i], c;
             bool corner = !gproji_curve_at(part, i);
             if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
-            if (corner) gproji_copy3(form->original + v, value + v);
-            for (c = v; c < v + 3; ++c) held[c] = corner ? 1 : held[c] == 0 ? -1 : held[c];
+            v = part->element[i];
+            if (corner) gproji_copy3(form->original + 3 * (size_t)v, value + 3 * (size_t)v);
+            kept[v] |= corner ? GPROJI_AXES : glides;
         }
     }
-    for (i = 0; i < coordinates; i += 3) count += held[i] + held[i + 1] + held[i + 2] == 3;
+    for (v = 0; v < vertices; ++v) {
+        kept[v] = (kept[v] & GPROJI_AXES) == GPROJI_AXES ? 1 : kept[v] & glides ? -1 : 0;
+        count += kept[v] > 0;
+    }
     return count;
 }
 
@@ -22871,14 +22802,14 @@ GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], doubl
 
 /* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
    fan; *count: how many there are. 0 if they lie along a line. */
-GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const double *held, const double *value, int32_t face,
+GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const int32_t *kept, const double *value, int32_t face,
                                         int32_t *count) {
     double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
     const double *first = NULL;
     int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
     for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
         size_t v = 3 * (size_t)mesh->origin[h];
-        if (held[v] + held[v + 1] + held[v + 2] < 3) continue;
+        if (kept[mesh->origin[h]] <= 0) continue;
         if (!first) first = value + v;
         gproji_sub3(value + v, first, offset[held_count++]);
     }
@@ -23214,9 +23145,9 @@ GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result
    Returns true in the first case alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    double *held = gproji_spare(form->system, 0), *value = gproji_spare(form->system, 1), worst = 0;
-    int32_t *kept = (int32_t *)(void *)held, vertices = form->mesh->vertex_count;
-    int32_t r, v, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, held, value);
+    double *value = gproji_spare(form->system, 1), worst = 0;
+    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
+    int32_t r, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, kept, value);
     bool planar = gproji_is_on(form, form->planarity), whole = planar, known;
     const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
     for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
@@ -23225,7 +23156,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         whole = whole && g->row[r].weight > 0;
         if (!(g->row[r].weight > 0) || f == previous) continue;
         previous = f;
-        bend = gproji_held_bend(form->mesh, held, value, f, &count);
+        bend = gproji_held_bend(form->mesh, kept, value, f, &count);
         if (!(bend > noticeable)) continue;
         ++bent;
         if (bend > worst) worst = bend, face = f, corners = count;
@@ -23243,11 +23174,6 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         memset(&spread, 0, sizeof spread);
         spread.form = form, spread.kept = kept, spread.value = value;
         spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
-        for (v = 0; v < vertices; ++v) { /* in place: three integers a vertex where three numbers were */
-            const double *of = held + 3 * (size_t)v;
-            bool stays = of[0] + of[1] + of[2] == 3, glides = of[0] < 0 || of[1] < 0 || of[2] < 0;
-            kept[v] = stays ? 1 : glides ? -1 : 0;
-        }
         memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
         known = gproji_tell_planes(&spread, result);
         if (!gproji_tell_asymptotic(form, result) && !known) gproji_tell_angles(&spread, result);
@@ -23353,7 +23279,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
     /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
     loads = &s->loads, load = s->work;
-    gproji_loads_at(form->mesh, loads, gproji_internal_loads(form), gproj_system_values(form->system), load);
+    gproji_loads_at(form->mesh, loads, s->load_scale, form->scale, gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
     g = gproji_group_at(form->system, s->group);
     for (r = 0; r < g->row_count; ++r)
@@ -23645,7 +23571,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
 }
 
-/* Gives a group of the library's own its schedule; adds it, if it is missing and gets a weight. Returns the part; NULL:
+/* Sets the schedule for a group that the library adds itself: now, if it is missing and gets a weight. Returns the part; NULL:
    there is none, or the form has an error. */
 GPROJI_INTERNAL gproji_part *gproji_schedule_own(gproj_form *form, gproji_own own, gproj_schedule schedule) {
     gproji_part *part;
@@ -23752,9 +23678,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, whole, corners,
-         ending = false;
-    bool started = form->statics && form->statics->started;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
+    bool started = form->statics && form->statics->started, ending = false;
     const gproji_part *part;
     double largest = 0; /* weight of a caller's wish */
     int32_t guided, guiding, i;
@@ -23775,12 +23700,16 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
-    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. */
-    whole = !skip_guard && (gproji_is_on(form, form->planarity) || gproji_carries(form));
+    /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. With
+       forces that is for a shape that carries, so that its faces need not turn over to do so. */
+    carries = forces && !gproji_is_on(form, gproji_own_group(form, GPROJI_OWN_FORCES));
+    whole = !skip_guard && (gproji_is_on(form, form->planarity) || carries);
     part = gproji_schedule_own(form, GPROJI_OWN_GUARD,
                                gproj_fade(whole && !smooth ? gproji_guard_weight : 0,
                                           gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
-    if (part) gproji_begin_guard(part);
+    for (i = 0; part && i < part->count; ++i)
+        gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
+                           gproji_guarded_areas(part) + 3 * (size_t)i);
     corners = whole && (smooth || (nearest && iterations > GPROJI_SAFE_MOST));
     part = gproji_schedule_own(form, GPROJI_OWN_CORNERS, gproj_keep(corners ? gproji_corner_weight : 0));
     if (part) gproji_begin_corners(part);
