@@ -11368,8 +11368,8 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
     while (loop->result.iterations < loop->iterations) {
         if (gproji_should_pause(loop)) return GPROJ_TIME_OUT;
         if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
-        /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are patient:
-           they are made where this one has ended badly. */
+        /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are
+           patient: they are made where this one has ended badly. */
         if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
             double residual = loop->standing.residual;
             bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
@@ -22743,9 +22743,9 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
 
 /* -- demands that can never hold -- */
 
-/* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are corners
-   that a gliding boundary keeps. kept: 1 for these, -1 for others that glide, else 0; value: the prescribed coordinates,
-   else 0. Returns how many stay. */
+/* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are
+   corners that a gliding boundary keeps. kept: 1 for these, -1 for others that glide, else 0; value: the prescribed
+   coordinates, else 0. Returns how many stay. */
 GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, int32_t *kept, double *value) {
     const int32_t glides = 8; /* in `kept` at first, beside a bit for each prescribed coordinate */
     int32_t vertices = form->mesh->vertex_count, i, r, v, count = 0;
@@ -23571,8 +23571,8 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
 }
 
-/* Sets the schedule for a group that the library adds itself: now, if it is missing and gets a weight. Returns the part; NULL:
-   there is none, or the form has an error. */
+/* Sets the schedule for a group that the library adds itself: now, if it is missing and gets a weight. Returns the
+   part; NULL: there is none, or the form has an error. */
 GPROJI_INTERNAL gproji_part *gproji_schedule_own(gproj_form *form, gproji_own own, gproj_schedule schedule) {
     gproji_part *part;
     if (schedule.weight > 0) gproji_add_own_group(form, own);
