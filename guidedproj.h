@@ -19008,6 +19008,10 @@ typedef struct gproji_rule {
     const gproji_acts *acts; /* NULL: it has rows, and that is all */
 } gproji_rule;
 
+/* A rule for ordinary rows that the caller asks for. */
+#define GPROJI_RULE(rule, name, kind, place, acts) \
+    static const gproji_rule rule = {name, kind, place, GPROJI_OWN_NONE, GPROJI_ORDINARY, acts}
+
 /* A constraint or wish that was added to a form: a rule, the group with the rows, and what the rule needs to know. */
 struct gproji_part {
     gproji_part *next;
@@ -19021,8 +19025,7 @@ struct gproji_part {
     double *factor;      /* more of them, one per entry; or NULL */
     int32_t curve_count; /* curves that the part owns, in internal units */
     gproj_curve **curve; /* NULL: none; an entry may be NULL */
-    void *data;          /* what the rule keeps; from the pool */
-    gproji_pool pool;    /* has all blocks */
+    void *data;          /* what the rule keeps */
 };
 
 /* A form's forces and loads: see statics. */
@@ -19065,6 +19068,7 @@ typedef struct gproji_solve {
 /* Arrays that builders and refreshes fill in and use at once. */
 typedef struct gproji_form_work {
     double *area;      /* the vectorial area of each face */
+    double *gradient;  /* 3 numbers a vertex */
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
     gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for the centre */
@@ -19072,7 +19076,7 @@ typedef struct gproji_form_work {
 
 struct gproj_form {
     gproji_heap heap;
-    gproji_pool pool; /* has the arrays below, but those of `unknowns` */
+    gproji_pool pool; /* has the arrays below, and parts with theirs */
     gproj_error error;
     gproj_host host;
     gproj_mesh *mesh;
@@ -19099,22 +19103,13 @@ struct gproj_form {
 /* -- life -- */
 
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
-    gproji_heap *own;
+    gproji_part *part;
     int32_t i;
     if (!form) return;
-    own = &form->heap;
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
-    gproji_give(own, form->statics, 1, sizeof *form->statics);
-    while (form->part) {
-        gproji_part *part = form->part;
-        form->part = part->next;
+    gproji_give(&form->heap, form->statics, 1, sizeof *form->statics);
+    for (part = form->part; part; part = part->next)
         for (i = 0; i < part->curve_count; ++i) gproj_curve_destroy(part->curve[i]);
-        gproji_pool_give_all(&part->pool);
-        gproji_give(own, part, 1, sizeof *part);
-    }
-    for (i = 0; i < form->unknowns.count; ++i)
-        gproji_give(own, form->unknowns.block[i].value, (size_t)form->unknowns.block[i].count, sizeof(double));
-    gproji_give(own, form->unknowns.block, form->unknowns.capacity, sizeof *form->unknowns.block);
     gproji_pool_give_all(&form->pool);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
@@ -19182,6 +19177,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     form->before = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->before);
     form->normal = gproji_take_ints(pool, faces);
     form->work.area = (double *)gproji_pool_take(pool, faces, 3 * sizeof *form->work.area);
+    form->work.gradient = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->work.gradient);
     form->work.ring = gproji_take_ints(pool, ring);
     form->work.term = (gproj_term *)gproji_pool_take(pool, (int64_t)ring + 1, 3 * sizeof *form->work.term);
     form->system = gproj_system_create(&form->host);
@@ -19251,13 +19247,9 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form) || !gproji_system_is_open(form->system)) return NULL;
-    part = (gproji_part *)gproji_take_zeroed(&form->heap, 1, sizeof *part);
-    if (part) {
-        gproji_pool_start(&part->pool, &form->heap);
-        part->element = (int32_t *)gproji_pool_take(&part->pool, count, sizeof *part->element);
-    }
-    if (!part || !part->element) {
-        gproji_give(&form->heap, part, 1, sizeof *part);
+    part = (gproji_part *)gproji_pool_take_zeroed(&form->pool, 1, sizeof *part);
+    if (part) part->element = gproji_take_ints(&form->pool, count);
+    if (form->pool.failed) {
         gproji_fail_memory(&form->error);
         return NULL;
     }
@@ -19270,9 +19262,9 @@ GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule
     return part;
 }
 
-/* Takes a zeroed block that lives as long as the part; NULL after an error, or if there is no part. */
+/* Takes a zeroed block for a part; NULL after an error, or if there is no part. */
 GPROJI_INTERNAL void *gproji_part_take(gproji_part *part, int64_t count, size_t size) {
-    void *block = part ? gproji_pool_take_zeroed(&part->pool, count, size) : NULL;
+    void *block = part ? gproji_pool_take_zeroed(&part->form->pool, count, size) : NULL;
     if (part && !block) gproji_fail_memory(&part->form->error);
     return block;
 }
@@ -19475,16 +19467,11 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* -- points: fixed vertices, handles, closeness -- */
 
-static const gproji_rule gproji_fixed_rule = {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                              GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_fixed_boundary_rule = {"fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_fixed_corners_rule = {"fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_targets_rule = {"targets",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_closeness_rule = {"closeness",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_fixed_rule, "fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_fixed_boundary_rule, "fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_fixed_corners_rule, "fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_targets_rule, "targets", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_closeness_rule, "closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 static const gproji_rule gproji_default_closeness_rule = {"closeness",          GPROJ_WISH,   GPROJ_PLACE_VERTEX,
                                                           GPROJI_OWN_CLOSENESS, GPROJI_GUIDE, NULL};
 
@@ -19615,10 +19602,8 @@ GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, i
 }
 
 static const gproji_acts gproji_normal_acts = {NULL, gproji_start_normals, gproji_settle_normals, NULL};
-static const gproji_rule gproji_planarity_rule = {"planarity",     GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_normal_acts};
-static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_normal_acts};
+GPROJI_RULE(gproji_planarity_rule, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_normal_acts);
+GPROJI_RULE(gproji_triangle_normals_rule, "triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_normal_acts);
 
 /* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). All
    rows of the group share two lists of terms, which name local variables: 0..2 are n in the first; n_x, v_ix, n_y,
@@ -19806,10 +19791,9 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
 
 static const gproji_acts gproji_gliding_acts = {gproji_refresh_gliding, gproji_start_gliding, NULL,
                                                 gproji_pass_gliding};
-static const gproji_rule gproji_gliding_rule = {"gliding",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_gliding_acts};
-static const gproji_rule gproji_gliding_boundary_rule = {"gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_gliding_acts};
+GPROJI_RULE(gproji_gliding_rule, "gliding", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_gliding_acts);
+GPROJI_RULE(gproji_gliding_boundary_rule, "gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+            &gproji_gliding_acts);
 
 /* Takes what gliding keeps; NULL after an error. */
 GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
@@ -19911,8 +19895,7 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
 }
 
 static const gproji_acts gproji_reference_acts = {gproji_refresh_reference, NULL, NULL, NULL};
-static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_reference_acts};
+GPROJI_RULE(gproji_reference_rule, "reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, &gproji_reference_acts);
 
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_reference_rule, 0, NULL);
@@ -19991,10 +19974,8 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     return count;
 }
 
-static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
-static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_fairness_rule, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_boundary_fairness_rule, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 
 /* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
 GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
@@ -20059,8 +20040,7 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_difference_acts = {gproji_refresh_differences, NULL, NULL, NULL};
-static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_difference_acts};
+GPROJI_RULE(gproji_tangential_rule, "tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, &gproji_difference_acts);
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
@@ -20093,8 +20073,7 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     return gproji_form_ready(form);
 }
 
-static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_difference_acts};
+GPROJI_RULE(gproji_gauss_rule, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, &gproji_difference_acts);
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -20188,8 +20167,7 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     gproji_set_products(term, 3, square, end, scale);
 }
 
-static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_lengths_rule, "lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, NULL);
 
 /* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
@@ -20226,8 +20204,7 @@ GPROJI_INTERNAL void gproji_start_mean(gproji_part *part) {
 }
 
 static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_mean, NULL, NULL};
-static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equal_lengths_acts};
+GPROJI_RULE(gproji_equal_lengths_rule, "equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, &gproji_equal_lengths_acts);
 
 /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
@@ -20282,8 +20259,7 @@ GPROJI_INTERNAL void gproji_start_midsphere(gproji_part *part) {
 }
 
 static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, NULL, NULL};
-static const gproji_rule gproji_midsphere_rule = {"midsphere",     GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_midsphere_acts};
+GPROJI_RULE(gproji_midsphere_rule, "midsphere", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, &gproji_midsphere_acts);
 
 /* (m'm - 2 c'm + s) / (2 R) = 0 for midpoints m = (v_i + v_j) / 2: products of v_i, v_j, c, and a term in s. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
@@ -20378,14 +20354,11 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
 }
 
 static const gproji_acts gproji_plane_acts = {NULL, gproji_start_planes, NULL, NULL};
-static const gproji_rule gproji_coplanar_rule = {"coplanar",      GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_collinear_rule = {"collinear",     GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_planar_boundary_rule = {"planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                        GPROJI_OWN_NONE,   GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_straight_boundary_rule = {"straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY,  &gproji_plane_acts};
+GPROJI_RULE(gproji_coplanar_rule, "coplanar", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_collinear_rule, "collinear", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_planar_boundary_rule, "planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_straight_boundary_rule, "straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+            &gproji_plane_acts);
 
 /* Makes a part one with planes (1) or lines (2), with a group without rows. */
 GPROJI_INTERNAL bool gproji_begin_planes(gproji_part *part, int32_t planes, double weight) {
@@ -20462,8 +20435,7 @@ GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
 
 /* -- directions of edges, lifting -- */
 
-static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_orthogonal_edges_rule, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, NULL);
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
@@ -20490,8 +20462,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_built(form, group);
 }
 
-static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                            GPROJI_OWN_NONE,       GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_orthogonal_boundary_rule, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
 
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
    and v_1: products of v, v_2, v_b, v_1. */
@@ -20510,8 +20481,7 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
     return gproji_built(form, group);
 }
 
-static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_lifting_rule, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
 
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     int32_t group = gproji_new_group(form, &gproji_lifting_rule, weight), i;
@@ -20573,8 +20543,7 @@ GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *
 }
 
 static const gproji_acts gproji_circularity_acts = {NULL, gproji_start_axis_points, gproji_settle_axis_points, NULL};
-static const gproji_rule gproji_circularity_rule = {"circularity",   GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_circularity_acts};
+GPROJI_RULE(gproji_circularity_rule, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_circularity_acts);
 
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
@@ -20646,8 +20615,7 @@ GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int
 }
 
 static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, NULL, gproji_settle_cones, NULL};
-static const gproji_rule gproji_conicality_rule = {"conicality",    GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_conicality_acts};
+GPROJI_RULE(gproji_conicality_rule, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_conicality_acts);
 
 /* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
    edge e between faces f and g: a is in the plane of e and n_f + n_g. */
@@ -20692,8 +20660,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     return gproji_built(form, part->group);
 }
 
-static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_parallelograms_rule, "parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, NULL);
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     int32_t group = gproji_new_group(form, &gproji_parallelograms_rule, weight), f, k, c;
@@ -20763,8 +20730,7 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
 }
 
 static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_mean, NULL, NULL};
-static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_equal_areas_acts};
+GPROJI_RULE(gproji_equal_areas_rule, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, &gproji_equal_areas_acts);
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
@@ -20781,22 +20747,6 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
         gproji_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     return gproji_built(form, part->group);
-}
-
-/* A sum over the whole mesh, linearised in all vertices. */
-typedef struct gproji_total {
-    double *gradient; /* 3 numbers a vertex of the mesh */
-    double unit;      /* the sum's change when the mesh grows by a mean edge length */
-} gproji_total;
-
-/* Adds a part for such a sum; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_total(gproj_form *form, const gproji_rule *rule) {
-    gproji_part *part = gproji_new_part(form, rule, 0);
-    gproji_total *total = (gproji_total *)gproji_part_take(part, 1, sizeof *total);
-    if (!total) return NULL;
-    part->data = total;
-    total->gradient = (double *)gproji_part_take(part, 3 * (int64_t)form->mesh->vertex_count, sizeof *total->gradient);
-    return total->gradient ? part : NULL;
 }
 
 /* Adds a group with `rows` rows for the whole mesh: terms for all coordinates in order, coefficients from the
@@ -20817,8 +20767,8 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
 GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group,
                                            const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    double *gradient = ((const gproji_total *)part->data)->gradient;
     gproj_form *form = part->form;
+    double *gradient = form->work.gradient;
     const double *x = gproj_system_values(system);
     double height = form->centre[2] * form->scale, area, constant, scale;
     size_t count = 3 * (size_t)form->mesh->vertex_count, k;
@@ -20836,7 +20786,7 @@ static const gproji_rule gproji_volume_rule = {"volume",        GPROJ_CONSTRAINT
                                                GPROJI_OWN_NONE, GPROJI_DENSE,     &gproji_volume_acts};
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
-    gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
+    gproji_part *part = gproji_new_part(form, &gproji_volume_rule, 0);
     if (!part) return -1;
     if (!gproji_is_finite(volume))
         return gproji_none(
@@ -20876,8 +20826,7 @@ GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
-static const gproji_rule gproji_length_bounds_rule = {"length bounds", GPROJ_BOUND,     GPROJ_PLACE_EDGE,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_length_bounds_rule, "length bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, NULL);
 
 /* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
@@ -20921,8 +20870,7 @@ GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_area_bounds_acts = {gproji_refresh_area_bounds, NULL, NULL, NULL};
-static const gproji_rule gproji_area_bounds_rule = {"area bounds",   GPROJ_BOUND,     GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_area_bounds_acts};
+GPROJI_RULE(gproji_area_bounds_rule, "area bounds", GPROJ_BOUND, GPROJ_PLACE_FACE, &gproji_area_bounds_acts);
 
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
@@ -20945,13 +20893,13 @@ enum {
     GPROJI_PRICE = 2
 };
 
-/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient. `size`:
-   by how much C changes when the mesh grows by a mean edge length. */
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient in
+   form->work. `size`: see gproji_refresh_cost. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     const gproj_mesh *mesh = form->mesh;
     const double *price = part->given + GPROJI_PRICE;
     const double *x = gproj_system_values(form->system);
-    double length, area, d[3], slope[3], *gradient = ((gproji_total *)part->data)->gradient;
+    double length, area, d[3], slope[3], *gradient = form->work.gradient;
     gproji_sum sum = {0, 0}, areas = {0, 0};
     int32_t e, f, k;
     memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
@@ -20982,27 +20930,27 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
     return length + price[1] * area;
 }
 
-/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit. A prescribed cost has the first one only. */
+/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit, the unit in part->data: by how much C changes
+   when the mesh grows by a mean edge length. A prescribed cost has the first one only. */
 GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group,
                                          const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    const gproji_total *total = (const gproji_total *)part->data;
     const double *x = gproj_system_values(system);
     gproji_sum ahead = {0, 0};
-    double scale = 1 / total->unit;
+    double scale = 1 / *(const double *)part->data, *gradient = part->form->work.gradient;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
     (void)progress;
     /* C - grad C'v cancels: it is summed up with compensation. */
     ahead.high = gproji_cost(part->form, part, NULL);
     for (t = 0; t < count; ++t) {
-        gproji_sum_add_product(&ahead, -total->gradient[t], x[t]);
-        total->gradient[t] *= scale;
+        gproji_sum_add_product(&ahead, -gradient[t], x[t]);
+        gradient[t] *= scale;
     }
     for (side = 0; side < 2; ++side) {
         double constant = scale * (gproji_sum_value(&ahead) - part->given[side]);
-        for (t = 0; side == 1 && t < count; ++t) total->gradient[t] = -total->gradient[t];
+        for (t = 0; side == 1 && t < count; ++t) gradient[t] = -gradient[t];
         if (!gproji_has_bound(part->given, side)) continue;
-        gproj_system_set_row(system, group, row++, total->gradient, side == 0 ? constant : -constant);
+        gproj_system_set_row(system, group, row++, gradient, side == 0 ? constant : -constant);
     }
 }
 
@@ -21020,11 +20968,10 @@ static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND
    which must be > 0 and finite; `max` is infinite then. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
-    gproji_part *part = gproji_new_total(form, rule);
-    double prices = length_price + area_price;
-    gproji_total *total;
+    gproji_part *part = gproji_new_part(form, rule, 0);
+    double prices = length_price + area_price, *unit = (double *)gproji_part_take(part, 1, sizeof *unit);
     int32_t rows;
-    if (!part) return -1;
+    if (!unit) return -1;
     if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min)))
         return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0 and finite", rule->name, min));
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices))
@@ -21033,9 +20980,9 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
     part->given[GPROJI_PRICE] = length_price / form->scale;
     part->given[GPROJI_PRICE + 1] = area_price / form->scale / form->scale;
-    total = (gproji_total *)part->data;
-    gproji_cost(form, part, &total->unit);
-    total->unit = gproji_fmax(total->unit, 1e-12);
+    gproji_cost(form, part, unit);
+    *unit = gproji_fmax(*unit, 1e-12);
+    part->data = unit;
     rows = gproji_has_bound(part->given, 0) + gproji_has_bound(part->given, 1);
     return gproji_add_global_rows(part, weight, rows);
 }
@@ -21122,8 +21069,7 @@ GPROJI_INTERNAL void gproji_pass_unknowns(gproji_part *part, gproji_stream *stre
 }
 
 static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, gproji_pass_unknowns};
-static const gproji_rule gproji_rows_rule = {"rows",          GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
-                                             GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_rows_acts};
+GPROJI_RULE(gproji_rows_rule, "rows", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, &gproji_rows_acts);
 
 /* A rule with the caller's name. */
 typedef struct gproji_own_rule {
@@ -21168,27 +21114,22 @@ GPROJI_INTERNAL gproji_part *gproji_callers_part(gproj_form *form, int32_t group
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user) {
     gproji_part *part = gproji_callers_part(form, group);
-    size_t needed;
     gproji_unknowns *u;
-    int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
+    double *start_values;
+    int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1, first;
     if (!part) return -1;
     if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values)
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                                        "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
                                        part->rule->name, count));
-    needed = (size_t)form->unknowns.count + 1;
-    form->unknowns.block =
-        (gproji_unknowns *)gproji_grow(&form->heap, form->unknowns.block, &form->unknowns.capacity, needed, sizeof *u);
-    if (form->unknowns.capacity < needed) return gproji_none(gproji_fail_memory(&form->error));
+    form->unknowns.block = (gproji_unknowns *)gproji_pool_grow(
+        &form->pool, form->unknowns.block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u);
+    start_values = (double *)gproji_pool_copy(&form->pool, values, count, sizeof *values);
+    if (form->pool.failed) return gproji_none(gproji_fail_memory(&form->error));
+    first = gproj_system_add_variables(form->system, count, size, NULL);
+    if (first < 0) return -1;
     u = &form->unknowns.block[form->unknowns.count];
-    u->value = (double *)gproji_take(&form->heap, (size_t)count, sizeof *u->value);
-    if (!u->value) gproji_fail_memory(&form->error);
-    u->first = u->value ? gproj_system_add_variables(form->system, count, size, NULL) : -1;
-    if (u->first < 0) {
-        gproji_give(&form->heap, u->value, (size_t)count, sizeof *u->value);
-        return -1;
-    }
-    memcpy(u->value, values, (size_t)count * sizeof *values);
+    u->first = first, u->value = start_values;
     u->part = part, u->count = count, u->unit = unit, u->start = start, u->user = user;
     gproji_start_block(form, form->unknowns.count++);
     return gproji_built(form, u->first);
