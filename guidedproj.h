@@ -14324,6 +14324,7 @@ enum {
 /* Owns a gproj_stencil and the arrays that `stencil` shows read-only. */
 typedef struct gproji_stencil_object {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     gproj_stencil stencil;
     int64_t *start;
     int32_t *column;
@@ -14339,9 +14340,7 @@ GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
     gproji_stencil_object *object;
     if (!stencil) return;
     object = gproji_stencil_owner(stencil);
-    gproji_give(&object->heap, object->start, (size_t)stencil->row_count + 1, sizeof *object->start);
-    gproji_give(&object->heap, object->column, object->column_capacity, sizeof *object->column);
-    gproji_give(&object->heap, object->weight, object->weight_capacity, sizeof *object->weight);
+    gproji_pool_give_all(&object->pool);
     gproji_destroy_object(object, sizeof *object);
 }
 
@@ -14351,12 +14350,12 @@ GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
 
 /* Makes room for `entries` entries; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
-    gproj_stencil *stencil = &object->stencil;
-    stencil->column = object->column =
-        (int32_t *)gproji_grow(&object->heap, object->column, &object->column_capacity, entries, sizeof(int32_t));
-    stencil->weight = object->weight =
-        (double *)gproji_grow(&object->heap, object->weight, &object->weight_capacity, entries, sizeof(double));
-    return object->column_capacity >= entries && object->weight_capacity >= entries;
+    gproji_pool *pool = &object->pool;
+    object->stencil.column = object->column =
+        (int32_t *)gproji_pool_grow(pool, object->column, &object->column_capacity, entries, sizeof(int32_t));
+    object->stencil.weight = object->weight =
+        (double *)gproji_pool_grow(pool, object->weight, &object->weight_capacity, entries, sizeof(double));
+    return !pool->failed;
 }
 
 /* Creates a stencil whose rows are all empty, with room for `entries` entries; NULL, and no error is set, when there is
@@ -14366,10 +14365,12 @@ GPROJI_INTERNAL gproj_stencil *gproji_stencil_create(int32_t rows, int32_t colum
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
     gproj_stencil *stencil;
     if (!object) return NULL;
+    gproji_pool_start(&object->pool, &object->heap);
     stencil = &object->stencil;
     stencil->row_count = rows, stencil->column_count = columns;
-    stencil->start = object->start = (int64_t *)gproji_take_zeroed(&object->heap, (size_t)rows + 1, sizeof(int64_t));
-    if (object->start && gproji_stencil_reserve(object, entries)) return stencil;
+    stencil->start = object->start =
+        (int64_t *)gproji_pool_take_zeroed(&object->pool, (int64_t)rows + 1, sizeof(int64_t));
+    if (gproji_stencil_reserve(object, entries)) return stencil;
     gproj_stencil_destroy(stencil);
     return NULL;
 }
@@ -14421,23 +14422,22 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* A stencil, a sparse matrix, that is made row by row; gproji_builder_end reports missing memory. */
 typedef struct gproji_builder {
-    gproji_heap heap; /* gives `place` */
     const gproj_host *host;
-    gproj_stencil *stencil;
-    bool failed; /* no memory: nothing more is added */
-    int32_t column_count;
-    int32_t row;    /* the one that is being made */
-    int64_t count;  /* all entries so far */
+    gproj_stencil *stencil; /* place is in the same pool */
+    bool failed;            /* no memory: nothing more is added */
+    int32_t row;            /* the one that is being made */
+    int64_t count;          /* all entries so far */
     int64_t *place; /* column_count: the column's entry in this row, plus 1; not beyond the row's start: none yet */
 } gproji_builder;
 
 GPROJI_INTERNAL void gproji_builder_begin(gproji_builder *builder, int32_t row_count, int32_t column_count,
                                           const gproj_host *host) {
-    builder->heap = gproji_heap_of(host), builder->host = host;
-    builder->column_count = column_count, builder->row = 0, builder->count = 0;
-    builder->place = (int64_t *)gproji_take_zeroed(&builder->heap, (size_t)column_count, sizeof *builder->place);
+    builder->host = host, builder->row = 0, builder->count = 0, builder->place = NULL;
     builder->stencil = gproji_stencil_create(row_count, column_count, 8 * (size_t)row_count, host);
-    builder->failed = !builder->place || !builder->stencil;
+    if (builder->stencil)
+        builder->place = (int64_t *)gproji_pool_take_zeroed(&gproji_stencil_owner(builder->stencil)->pool, column_count,
+                                                            sizeof *builder->place);
+    builder->failed = !builder->place;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
@@ -14463,7 +14463,6 @@ GPROJI_INTERNAL void gproji_builder_next(gproji_builder *builder) {
 /* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_builder_end(gproji_builder *builder, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
-    gproji_give(&builder->heap, builder->place, (size_t)builder->column_count, sizeof *builder->place);
     /* transposing twice sorts the columns in all rows, in linear time */
     if (!builder->failed) turned = gproji_transposed(builder->stencil, builder->host);
     gproj_stencil_destroy(builder->stencil);
@@ -14477,7 +14476,7 @@ GPROJI_INTERNAL gproj_stencil *gproji_builder_end(gproji_builder *builder, gproj
 
 /* A level of a subdivision, and the way to the next one. Meshes and stencils have their own memory. */
 typedef struct gproji_subdivision {
-    gproji_heap heap; /* gives sharpness and corner */
+    gproji_pool pool; /* sharpness and corner, on all levels so far */
     const gproj_host *host;
     gproj_error *error;
     gproj_scheme scheme;
@@ -14771,7 +14770,7 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
     const gproj_mesh *mesh = s->mesh;
     gproj_stencil *step = gproji_level_stencil(s), *both;
     gproj_mesh *fine = step ? gproji_level_mesh(s, step) : NULL;
-    double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
+    double *sharpness = fine ? (double *)gproji_pool_take_zeroed(&s->pool, fine->edge_count, sizeof(double)) : NULL;
     int32_t f, k, at = 0;
     if (!sharpness) {
         gproj_mesh_destroy(fine);
@@ -14790,7 +14789,6 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
         if (s->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
     }
     /* 2. The fine mesh takes the coarse one's place. */
-    gproji_give(&s->heap, s->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
     s->sharpness = sharpness;
     s->mesh = s->own = fine;
@@ -14809,6 +14807,7 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
     gproj_subdivide_options given;
+    gproji_heap heap = gproji_heap_of(host);
     gproji_subdivision s;
     gproj_code code = GPROJ_OK;
     double *sharpness;
@@ -14821,12 +14820,12 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     if (given.levels == 0) given.levels = 1;
     if (gproji_check_subdivision(mesh, &given, error)) return NULL;
     memset(&s, 0, sizeof s);
-    s.heap = gproji_heap_of(host);
+    gproji_pool_start(&s.pool, &heap);
     s.host = host, s.error = error;
     s.mesh = mesh, s.scheme = given.scheme, s.corner_count = mesh->vertex_count;
-    s.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
-    s.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
-    if (!sharpness || !corner) code = gproji_fail_memory(error);
+    s.sharpness = sharpness = (double *)gproji_pool_take_zeroed(&s.pool, mesh->edge_count, sizeof(double));
+    s.corner = corner = (bool *)gproji_pool_take_zeroed(&s.pool, mesh->vertex_count, sizeof(bool));
+    if (s.pool.failed) code = gproji_fail_memory(error);
     /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
     for (k = 0; !code && k < mesh->edge_count; ++k)
         if (mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
@@ -14840,8 +14839,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     /* 2. The levels. */
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
-    gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
-    gproji_give(&s.heap, s.sharpness, (size_t)s.mesh->edge_count, sizeof(double));
+    gproji_pool_give_all(&s.pool);
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
@@ -15565,6 +15563,7 @@ static const struct {
 
 /* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
+    gproji_pool pool; /* all blocks */
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
     void *block[GPROJI_EDIT_KINDS]; /* rows * room elements: the arrays below */
@@ -15623,42 +15622,22 @@ GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
     edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
 }
 
-GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(heap, s->block[kind], (size_t)s->room[kind],
-                    gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
-}
-
-/* Takes the blocks for a store's rooms; after a failure those that were taken can be given back. */
-GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
-    bool complete = true;
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        size_t size = gproji_edit_block[kind].rows * gproji_edit_block[kind].size;
-        s->block[kind] = gproji_take_zeroed(heap, (size_t)s->room[kind], size);
-        complete = complete && s->block[kind];
-    }
-    return complete;
-}
-
 /* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
-    const gproji_edit_store *s = &object->now;
-    bool complete;
     int32_t kind;
-    *copy = *s;
-    complete = gproji_edit_take(&object->heap, copy);
-    for (kind = 0; complete && kind < GPROJI_EDIT_KINDS; ++kind)
-        memcpy(copy->block[kind], s->block[kind],
-               (size_t)s->room[kind] * gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
-    if (!complete) gproji_edit_give(&object->heap, copy);
-    return complete;
+    *copy = object->now;
+    gproji_pool_start(&copy->pool, &object->heap);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        copy->block[kind] = gproji_pool_copy(&copy->pool, copy->block[kind], copy->room[kind],
+                                             gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (!copy->pool.failed) return true;
+    gproji_pool_give_all(&copy->pool);
+    return false;
 }
 
 /* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
 GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
-    gproji_edit_give(&object->heap, code ? &object->now : copy);
+    gproji_pool_give_all(code ? &object->now.pool : &copy->pool);
     if (code) object->now = *copy;
     gproji_edit_publish(object);
     return code;
@@ -15685,12 +15664,13 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         char *block;
         if (needed <= old) continue;
         room = gproji_max(needed, 2 * old); /* n additions cost O(n); old < needed, at most half the largest int32_t */
-        block = (char *)gproji_take_zeroed(&object->heap, (size_t)room, rows * size);
+        block = (char *)gproji_pool_retake(&s->pool, s->block[kind], (size_t)room, rows * size);
         if (!block) return gproji_fail_memory(error);
-        for (r = 0; r < rows; ++r)
-            memcpy(block + r * (size_t)room * size, (char *)s->block[kind] + r * (size_t)old * size,
-                   (size_t)s->count[kind] * size);
-        gproji_give(&object->heap, s->block[kind], (size_t)old, rows * size);
+        for (r = rows; r-- > 0;) { /* the last array moves first */
+            char *array = block + r * (size_t)room * size;
+            memmove(array, block + r * (size_t)old * size, (size_t)old * size);
+            memset(array + (size_t)old * size, 0, (size_t)(room - old) * size);
+        }
         s->block[kind] = block, s->room[kind] = room;
         gproji_edit_publish(object);
     }
@@ -15998,7 +15978,7 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
     if (!object) return;
-    gproji_edit_give(&object->heap, &object->now);
+    gproji_pool_give_all(&object->now.pool);
     gproji_pool_give_all(&object->numbers);
     gproji_destroy_object(object, sizeof *object);
 }
@@ -16007,19 +15987,23 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     gproji_edit_object *object;
     gproji_edit_store *s;
     size_t vertices, halfedges, faces;
-    int32_t polylines, i;
+    int32_t polylines, kind, i;
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
     object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
     gproji_pool_start(&object->numbers, &object->heap);
     s = &object->now;
+    gproji_pool_start(&s->pool, &object->heap);
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
     s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
     s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
     s->count[GPROJI_EDIT_FACE] = mesh->face_count, s->count[GPROJI_EDIT_POLYLINE_START] = s->polyline_count + 1;
     s->count[GPROJI_EDIT_POLYLINE_VERTEX] = polylines;
     memcpy(s->room, s->count, sizeof s->room);
-    if (!gproji_edit_take(&object->heap, s)) {
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        s->block[kind] = gproji_pool_take_zeroed(&s->pool, s->room[kind],
+                                                 gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (s->pool.failed) {
         gproji_fail_memory(error);
         gproj_edit_destroy(&object->edit);
         return NULL;
@@ -16431,7 +16415,7 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
 
 /* Drafts the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
    vertex_face: the face of each vertex, or NULL. */
-GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
@@ -16504,7 +16488,7 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
     dual.midpoint = gproji_take_ints(pool, edges);
     dual.seen = gproji_take_ints(pool, faces);
     return gproji_draft_end(&dual.draft, pool->failed ? gproji_fail_memory(error)
-                                                      : gproji_draft_dual(mesh, &dual, vertex_face, error));
+                                                      : gproji_dual_build(mesh, &dual, vertex_face, error));
 }
 
 /* ============================================================================================================
@@ -17643,7 +17627,8 @@ typedef struct gproji_filling {
     int32_t cut_vertices;   /* then those on cuts */
 } gproji_filling;
 
-GPROJI_INTERNAL void gproji_add_quad(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c, int32_t d) {
+GPROJI_INTERNAL void gproji_ints_add4(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c,
+                                      int32_t d) {
     gproji_ints_add(pool, quad, a);
     gproji_ints_add(pool, quad, b);
     gproji_ints_add(pool, quad, c);
@@ -17841,7 +17826,7 @@ GPROJI_INTERNAL void gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
     int32_t outer = patch->vertices;
     for (side = i; side < to; ++side) {
         int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
-        for (j = 0; j < n; ++j) gproji_add_quad(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
+        for (j = 0; j < n; ++j) gproji_ints_add4(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
         outer += n;
     }
     /* One edge more on the side before and on the side after; then the new sides outside. */
@@ -17890,7 +17875,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < rows; ++i)
         for (j = 0; j < all; ++j) {
             int32_t v = i * (all + 1) + j;
-            gproji_add_quad(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
+            gproji_ints_add4(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
         }
     /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
@@ -17903,7 +17888,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     n = (int32_t)patch->loop.count;
     for (i = 0; p->ring && i < n; ++i) {
         int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        gproji_add_quad(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
+        gproji_ints_add4(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
     }
     for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
     /* 5. Faces at each vertex. */
@@ -18706,7 +18691,7 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
 }
 
 /* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
-GPROJI_INTERNAL void gproji_add_distortion(gproji_untangling *u, int32_t quad) {
+GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
     for (corner = 0; corner < 4;
@@ -18744,7 +18729,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
-    for (q = 0; q < quads; ++q) gproji_add_distortion(u, q);
+    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
     outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
     u->failed = outcome == GPROJ_FACTOR_FAILED;
     if (outcome != GPROJ_FACTORED) return false;
@@ -18855,7 +18840,7 @@ GPROJI_INTERNAL void gproji_lay_rings(gproji_filling *f) {
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
             depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
             gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x);
-            gproji_add_quad(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
+            gproji_ints_add4(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
         }
     f->curve_vertices = f->vertices;
     for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
