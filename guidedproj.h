@@ -12878,6 +12878,11 @@ GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32
 /* The outgoing half-edge after h around the same vertex, counter-clockwise. */
 GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
 
+/* The position of a half-edge's origin; with other positions than the mesh's, too. */
+GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
+    return position + 3 * (size_t)mesh->origin[halfedge];
+}
+
 GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
                        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a "
@@ -13264,20 +13269,20 @@ GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *posi
     if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
     if (gproj_mesh_valence(mesh, vertex) == 2) return true;
     h = mesh->vertex_halfedge[vertex]; /* leaves along the boundary; prev[h] enters along it */
-    return gproji_turns(position + 3 * (size_t)mesh->origin[mesh->prev[h]], position + 3 * (size_t)vertex,
-                        position + 3 * (size_t)mesh->origin[h ^ 1]);
+    return gproji_turns(gproji_corner_at(mesh, position, mesh->prev[h]), position + 3 * (size_t)vertex,
+                        gproji_corner_at(mesh, position, h ^ 1));
 }
 
 /* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), which equals the sum in the
    interface but has no cancellation far from the origin. */
 GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
     int32_t start = mesh->face_halfedge[face], h;
-    const double *base = position + 3 * (size_t)mesh->origin[start];
+    const double *base = gproji_corner_at(mesh, position, start);
     double a[3], b[3], cross[3];
     gproji_set3(0, 0, 0, area);
     for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[h], base, a);
-        gproji_sub3(position + 3 * (size_t)mesh->origin[mesh->next[h]], base, b);
+        gproji_sub3(gproji_corner_at(mesh, position, h), base, a);
+        gproji_sub3(gproji_corner_at(mesh, position, mesh->next[h]), base, b);
         gproji_cross3(a, b, cross);
         gproji_add_scaled3(0.5, cross, area);
     }
@@ -13307,7 +13312,7 @@ GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *po
     if (!(sum < 1e-140)) return sum;
     /* squares underflow in edges as short as these: measure them again in a smaller unit */
     for (sum = 0, h = 0; h < mesh->halfedge_count; h += 2) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
+        gproji_sub3(gproji_corner_at(mesh, position, h), gproji_corner_at(mesh, position, h + 1), d);
         for (k = 0; k < 3; ++k) d[k] /= unit;
         sum += gproji_length3(d);
     }
@@ -15247,7 +15252,7 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
     if (!curve) return NULL;
     /* with the faces' edges, that is against the boundary half-edges */
     for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h])
-        gproji_copy3(mesh->position + 3 * (size_t)mesh->origin[h], curve->point + 3 * (size_t)count);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, h), curve->point + 3 * (size_t)count);
     return gproji_curve_finish(curve, true, error);
 }
 
@@ -15342,10 +15347,10 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     gproj_mesh_face_area_vector(mesh, face, n);
     gproji_normalise3(n, gproji_up);
     gproji_tangents3(n, u, v);
-    first = mesh->position + 3 * (size_t)mesh->origin[h];
+    first = gproji_corner_at(mesh, mesh->position, h);
     polygon->count = mesh->face_degree[face], polygon->ears = 0;
     for (i = 0; i < polygon->count; ++i, h = mesh->next[h]) {
-        gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[h], first, d);
+        gproji_sub3(gproji_corner_at(mesh, mesh->position, h), first, d);
         polygon->xy[2 * (size_t)i] = gproji_dot3(d, u);
         polygon->xy[2 * (size_t)i + 1] = gproji_dot3(d, v);
         polygon->vertex[i] = mesh->origin[h];
@@ -15485,9 +15490,9 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
         gproj_mesh_face_area_vector(mesh, f, n);
         if (!gproji_normalise3(n, gproji_zero)) continue;
         for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            const double *x = gproji_corner_at(mesh, mesh->position, h);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, mesh->prev[h]), x, a);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, mesh->next[h]), x, b);
             gproji_cross3(a, b, cross);
             gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
                                surface->normal + 3 * (size_t)mesh->origin[h]);
@@ -16409,7 +16414,7 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     double *x = dual->draft.position + 3 * (size_t)number;
     gproji_set3(0, 0, 0, x);
     for (k = 0; k < count; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
+        gproji_add_scaled3(1.0 / count, gproji_corner_at(mesh, mesh->position, h), x);
     return number;
 }
 
@@ -16527,14 +16532,6 @@ GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
     }
 }
 
-GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
-    return mesh->position + 3 * (size_t)mesh->origin[halfedge];
-}
-
-GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
-    return position + 3 * (size_t)mesh->origin[halfedge];
-}
-
 /* Finds the least-squares plane of `count` vertices: vertex[h], h = first, next[first], ..., or first, first + 1, ...
    without `next`. Returns their mean, a unit normal and, unless it is NULL, the direction in the plane in which they
    scatter least. */
@@ -16594,7 +16591,7 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     double d[3], worst = 0;
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; mesh->face_degree[face] > 3 && k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        gproji_sub3(gproji_corner_at(mesh, mesh->position, h), mean, d);
         worst = gproji_fmax(worst, fabs(gproji_dot3(normal, d)));
     }
     return worst;
@@ -16752,8 +16749,8 @@ GPROJI_INTERNAL double gproji_angle_sum(const gproj_mesh *mesh, const double *x,
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     do {
         int32_t next = gproji_rotate(mesh, h);
-        gproji_sub3(x + 3 * (size_t)mesh->origin[next ^ 1], middle, a);
-        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], middle, b);
+        gproji_sub3(gproji_corner_at(mesh, x, next ^ 1), middle, a);
+        gproji_sub3(gproji_corner_at(mesh, x, h ^ 1), middle, b);
         gproji_cross3(a, b, cross);
         if (mesh->face[h] >= 0) sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
         sign = alternating ? -sign : 1;
@@ -16971,15 +16968,15 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
             bool has_centre = gproji_circumcentre(mesh, mesh->position, f, mean, normal, centre);
             int32_t h = mesh->face_halfedge[f], k;
             for (k = 0; has_centre && k < mesh->face_degree[f]; ++k, h = mesh->next[h])
-                gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
+                gproji_widen(gproji_distance3(gproji_corner_at(mesh, mesh->position, h), centre), &least, &most);
             m->circularity_max = gproji_fmax(m->circularity_max, (has_centre ? most - least : HUGE_VAL) / unit);
         }
         if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
             int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
             double first[3], second[3], joining[3], across[3], length;
-            gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
-            gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
-            gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, c), gproji_corner_at(mesh, mesh->position, a), first);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, d), gproji_corner_at(mesh, mesh->position, b), second);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, b), gproji_corner_at(mesh, mesh->position, a), joining);
             gproji_cross3(first, second, across);
             length = gproji_length3(across);
             if (length > 0)
@@ -17195,7 +17192,8 @@ typedef struct gproji_mirrors {
 
 /* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
-    gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
+    gproji_sub3(gproji_corner_at(mesh, mesh->position, halfedge ^ 1), gproji_corner_at(mesh, mesh->position, halfedge),
+                out);
     gproji_normalise3(out, gproji_zero);
 }
 
@@ -17486,10 +17484,10 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
         return NULL;
     for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
         double *out = draft.position + 12 * (size_t)e;
-        gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
-        gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
-        gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
-        gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, 2 * e), out);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, 2 * e + 1), out + 3);
+        gproji_copy3(gproji_corner_at(offset, offset->position, 2 * e + 1), out + 6);
+        gproji_copy3(gproji_corner_at(offset, offset->position, 2 * e), out + 9);
         draft.degree[e] = 4;
     }
     for (e = 0; e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
@@ -17514,7 +17512,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         gproji_unit_normal(mesh, mesh->position, f, n);
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            gproji_sub3(gproji_corner_position(offset, h), gproji_corner_position(mesh, h), d);
+            gproji_sub3(gproji_corner_at(offset, offset->position, h), gproji_corner_at(mesh, mesh->position, h), d);
             gproji_widen(gproji_dot3(n, d), &m.face_distance_min, &m.face_distance_max);
         }
     }
@@ -17526,12 +17524,14 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
     for (e = 0; e < mesh->edge_count; ++e) {
         double direction[3], c[3], along;
         gproji_edge_direction(mesh, 2 * e, direction);
-        gproji_sub3(gproji_corner_position(offset, 2 * e + 1), gproji_corner_position(offset, 2 * e), c);
+        gproji_sub3(gproji_corner_at(offset, offset->position, 2 * e + 1),
+                    gproji_corner_at(offset, offset->position, 2 * e), c);
         along = gproji_dot3(direction, c);
         m.reversed_edges += along < 0;
         gproji_add_scaled3(-along, direction, c);
         m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
-        gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
+        gproji_sub3(gproji_corner_at(offset, offset->position, 2 * e), gproji_corner_at(mesh, mesh->position, 2 * e),
+                    n);
         gproji_cross3(direction, n, n);
         gproji_normalise3(n, gproji_zero);
         m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
@@ -19576,7 +19576,7 @@ GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, i
         double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3], *n = x + part->form->normal[part->element[from]];
         int32_t face = part->element[from], h = mesh->face_halfedge[face], c, round;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
+            gproji_sub3(gproji_corner_at(mesh, x, mesh->next[h]), gproji_corner_at(mesh, x, h), e);
             gproji_add_square3(e, a);
         }
         for (round = 0; round < GPROJI_SETTLE_ROUNDS && gproji_solve_square3(a, gproji_settle_shift, n, b); ++round) {
@@ -19612,8 +19612,8 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     local = gproji_add_placed_rows(s, part->group, 0, 1, 3, unit, 3, -1, face);
     for (k = 0; k < 3 && local; ++k) local[k] = n + k;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        gproji_sub3(form->original + 3 * (size_t)mesh->origin[mesh->next[h]],
-                    form->original + 3 * (size_t)mesh->origin[h], edge);
+        gproji_sub3(gproji_corner_at(mesh, form->original, mesh->next[h]), gproji_corner_at(mesh, form->original, h),
+                    edge);
         bent += gproji_dot3(normal, edge) * gproji_dot3(normal, edge);
     }
     if (local && bent > 4)
@@ -19843,7 +19843,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
         gproji_error_clear(&error);
         do {
             loop_of[mesh->origin[h]] = l;
-            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
+            gproji_copy3(gproji_corner_at(mesh, form->original, h), points + 3 * (size_t)count++);
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[l]);
         part->curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
@@ -20500,7 +20500,7 @@ GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
         int32_t face = part->element[i], h = mesh->face_halfedge[face];
         double mean[3] = {0, 0, 0}, normal[3];
         for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-            gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
+            gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_at(mesh, x, h), mean);
         gproji_face_normal(part->form, face, normal);
         gproji_circumcentre(mesh, x, face, mean, normal, x + part->form->axis[face]);
     }
@@ -20517,7 +20517,7 @@ GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *
         double e[3], m[3], change[3];
         int32_t face = part->element[from], h = mesh->face_halfedge[face], c, k;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-            const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
+            const double *v = gproji_corner_at(mesh, x, h), *w = gproji_corner_at(mesh, x, mesh->next[h]);
             gproji_sub3(w, v, e);
             for (k = 0; k < 3; ++k) m[k] = (v[k] + w[k]) / 2 - p[k];
             gproji_add_square3(e, a);
@@ -20575,7 +20575,7 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         if (h < 0) continue;
         a = x + form->cone[mesh->origin[h]];
-        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], x + 3 * (size_t)mesh->origin[h], e);
+        gproji_sub3(gproji_corner_at(mesh, x, h ^ 1), gproji_corner_at(mesh, x, h), e);
         gproji_copy3(x + form->normal[mesh->face[h]], m);
         gproji_add_scaled3(1, x + form->normal[mesh->face[h ^ 1]], m);
         gproji_cross3(e, m, slope[0]);
@@ -20670,7 +20670,7 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     const double *x = gproj_system_values(form->system);
     double across[3];
     int32_t k;
-    gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
+    gproji_sub3(gproji_corner_at(mesh, x, mesh->next[h]), gproji_corner_at(mesh, x, mesh->prev[h]), across);
     gproji_cross3(across, normal, out);
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
@@ -20685,7 +20685,7 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
     constant = scale * gproji_length3(normal);
     gproji_normalise3(normal, gproji_zero);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        const double *v = x + 3 * (size_t)mesh->origin[h];
+        const double *v = gproji_corner_at(mesh, x, h);
         gproji_area_slope(form, h, normal, slope);
         for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[c];
         constant -= scale * gproji_dot3(slope, v);
