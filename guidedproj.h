@@ -13010,9 +13010,10 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
-/* Checks how many vertices and faces there are, and counts the corners of all faces, the entries of face_vertex. */
+/* Checks how many vertices and faces there are, and counts the corners of all faces, the entries of face_vertex.
+   Without face_degree all faces have `degree` corners. */
 GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t vertex_count, int32_t face_count, const int32_t *face_degree,
-                                                int64_t *corners, gproj_error *error) {
+                                                int32_t degree, int64_t *corners, gproj_error *error) {
     int32_t f;
     *corners = 0;
     if (vertex_count < 1)
@@ -13023,10 +13024,11 @@ GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t vertex_count, int32_t fa
                            "the mesh has %d vertices, more than %d; split it", vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     for (f = 0; f < face_count; ++f) {
-        if (face_degree[f] < 3)
+        if (face_degree) degree = face_degree[f];
+        if (degree < 3)
             return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
-        *corners += face_degree[f];
+                               "face %d has %d corners; a face needs at least 3", f, degree);
+        *corners += degree;
         if (*corners > GPROJI_CORNERS_MAX)
             return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
                                "the faces up to face %d have more than %d corners; split the mesh", f,
@@ -13041,7 +13043,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, &corners, error);
+    code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, 0, &corners, error);
     if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
@@ -13142,15 +13144,11 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
-    gproji_pool pool;
-    gproj_mesh *mesh = NULL;
-    double *position = NULL;
-    int32_t *degree, *vertex = NULL, f;
-    int64_t corners = 0, k;
+    gproji_draft draft;
+    int64_t corners, k;
+    int32_t f;
     size_t size = data && data->position ? sizeof(double) : sizeof(float), stride;
     const char *wrong = NULL, *from;
-    gproj_code code;
     /* 1. No array may be missing or given twice, and no stride too short. */
     gproji_error_clear(error);
     if (!data)
@@ -13164,31 +13162,25 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
         wrong = "either face_degree or degree is needed";
     if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
-    if (wrong) return NULL;
     /* 2. Room, for as many corners as the degrees sum up to. */
-    gproji_pool_start(&pool, &heap);
-    degree = gproji_take_ints(&pool, gproji_max(0, data->face_count));
-    for (f = 0; degree && f < data->face_count; ++f)
-        degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
-    code = degree ? gproji_count_corners(data->vertex_count, data->face_count, degree, &corners, error)
-                  : gproji_fail_memory(error);
-    if (!code) position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
-    if (!code) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
-    if (!code && !(position && vertex)) code = gproji_fail_memory(error);
+    if (wrong ||
+        gproji_count_corners(data->vertex_count, data->face_count, data->face_degree, data->degree, &corners, error) ||
+        !gproji_draft_begin(&draft, data->vertex_count, data->face_count, corners, 0, 0, host, error))
+        return NULL;
     /* 3. The mesh. Strides may leave numbers at odd addresses: hence memcpy. */
     stride = data->position_stride ? data->position_stride : 3 * size;
     from = data->position ? (const char *)data->position : (const char *)data->float_position;
-    for (k = 0; !code && k < 3 * (int64_t)data->vertex_count; ++k) {
+    for (k = 0; k < 3 * (int64_t)data->vertex_count; ++k) {
         const char *at = from + (size_t)(k / 3) * stride + (size_t)(k % 3) * size;
         float number = 0;
-        memcpy(data->position ? (void *)&position[k] : (void *)&number, at, size);
-        if (!data->position) position[k] = number;
+        memcpy(data->position ? (void *)&draft.position[k] : (void *)&number, at, size);
+        if (!data->position) draft.position[k] = number;
     }
-    for (k = 0; !code && k < corners; ++k)
-        vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
-    if (!code) mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
-    gproji_pool_give_all(&pool);
-    return mesh;
+    for (f = 0; f < data->face_count; ++f) draft.degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
+    for (k = 0; k < corners; ++k)
+        draft.corner[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+    draft.soup.vertex_count = data->vertex_count, draft.soup.face_count = data->face_count;
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
@@ -19704,19 +19696,13 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Vertices on curves: one of the caller's, in the mesh's units, or curves of the part. */
+/* Vertices on curves. */
 typedef struct gproji_gliding {
-    const gproj_curve *curve; /* the caller's; NULL: the part's, and: */
-    int32_t *curve_of;        /* per vertex: one of the part's curves; -1: it stays */
-    int32_t *segment;         /* per vertex: the segment it glides on; -1: to be found */
-    int32_t *pinned;          /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
+    bool in_mesh_units;        /* the curve is the caller's; false: curves are the part's */
+    const gproj_curve **curve; /* per vertex; NULL: it stays */
+    int32_t *segment;          /* per vertex: the segment it glides on; -1: to be found */
+    int32_t *pinned;           /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
 } gproji_gliding;
-
-/* The curve of the i-th vertex; NULL: it stays. */
-GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int32_t i) {
-    const gproji_gliding *g = (gproji_gliding *)part->data;
-    return g->curve ? g->curve : g->curve_of[i] < 0 ? NULL : part->curve[g->curve_of[i]];
-}
 
 /* Keeps each vertex to the line of a segment, from which it walks to neighbouring segments. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group,
@@ -19726,12 +19712,12 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     bool settled = progress->unguided >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        const gproj_curve *curve = gproji_curve_at(part, i);
+        const gproj_curve *curve = gliding->curve[i];
         int32_t segment = gliding->segment[i], pinned = -1;
         double p[3], end[3];
         if (!curve) continue;
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->element[i], p);
-        if (gliding->curve) gproji_from_internal(part->form, p, p);
+        if (gliding->in_mesh_units) gproji_from_internal(part->form, p, p);
         /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
            between two segments for ever. */
         if (segment < 0)
@@ -19744,7 +19730,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         if (pinned < 0 && gproji_along(curve, segment, p, true) > 0) pinned = 1;
         if (!progress->trial) gliding->segment[i] = segment, gliding->pinned[i] = pinned;
         gproji_copy3(curve->point + 3 * ((size_t)segment + (pinned == 1)), end);
-        if (gliding->curve) gproji_to_internal(part->form, end, end);
+        if (gliding->in_mesh_units) gproji_to_internal(part->form, end, end);
         gproji_set_gliding(system, group, 3 * i, curve->tangent + 3 * (size_t)segment, end, pinned >= 0);
     }
 }
@@ -19754,7 +19740,7 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        if (!gproji_curve_at(part, i)) continue;
+        if (!gliding->curve[i]) continue;
         gliding->segment[i] = gliding->pinned[i] = -1;
         gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
@@ -19766,7 +19752,7 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
     gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i, k, count;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
-        const gproj_curve *curve = gproji_curve_at(part, i);
+        const gproj_curve *curve = gliding->curve[i];
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
         gproji_pass_integer(stream, &gliding->segment[i], -1, curve ? curve->segment_count - 1 : -1);
         gproji_pass_integer(stream, &gliding->pinned[i], -1, 1);
@@ -19785,9 +19771,10 @@ GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
     gproji_gliding *gliding = (gproji_gliding *)gproji_part_take(part, 1, sizeof *gliding);
     if (!gliding) return NULL;
     part->data = gliding;
+    gliding->curve = (const gproj_curve **)gproji_part_take(part, part->count, sizeof *gliding->curve);
     gliding->segment = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->segment);
     gliding->pinned = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->pinned);
-    return gliding->segment && gliding->pinned ? gliding : NULL;
+    return gproji_form_ready(part->form) ? gliding : NULL;
 }
 
 /* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
@@ -19805,7 +19792,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
         for (k = 0; k < 3; ++k) gproji_add_row(form->system, part->group, 3, term, 0, part->element[i]);
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->element[i],
-                               !gproji_curve_at(part, i));
+                               !gliding->curve[i]);
     }
     return gproji_built(form, part->group);
 }
@@ -19814,9 +19801,11 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
                                     double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_gliding_rule, count, vertices);
     gproji_gliding *gliding = gproji_take_gliding(part);
+    int32_t i;
     if (!gliding) return -1;
     if (!curve) return gproji_none(gproji_refuse(&form->error, "gliding: there is no curve"));
-    gliding->curve = curve;
+    gliding->in_mesh_units = true;
+    for (i = 0; i < part->count; ++i) gliding->curve[i] = curve;
     return gproji_add_gliding_rows(part, weight);
 }
 
@@ -19831,7 +19820,6 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     mesh = form->mesh;
     vertices = (size_t)mesh->vertex_count;
     part->curve = (gproj_curve **)gproji_part_take(part, mesh->loop_count, sizeof *part->curve);
-    gliding->curve_of = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->curve_of);
     if (part->curve) part->curve_count = mesh->loop_count;
     loop_of = (int32_t *)gproji_take(&form->heap, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->heap, 3 * vertices, sizeof *points);
@@ -19853,7 +19841,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
     for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
         l = loop_of[part->element[i]];
-        gliding->curve_of[i] = gproj_form_is_corner(form, part->element[i]) || !part->curve[l] ? -1 : l;
+        gliding->curve[i] = gproj_form_is_corner(form, part->element[i]) ? NULL : part->curve[l];
     }
     gproji_give(&form->heap, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->heap, points, 3 * vertices, sizeof *points);
@@ -19909,16 +19897,16 @@ typedef struct gproji_difference {
     const int32_t *neighbour;
 } gproji_difference;
 
-/* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
-   the element, so that a refresh can fill in their coefficients. */
-GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
-                                           const gproji_difference *d) {
-    int32_t points = d->count + 1, last, k, i, *local;
+/* Adds a difference's rows, one for each coordinate. In a tangent plane, where a refresh fills in their coefficients,
+   there are two, and the part notes the element. */
+GPROJI_INTERNAL void gproji_add_difference(gproji_part *part, const gproji_difference *d) {
+    gproj_form *form = part->form;
+    int32_t points = d->count + 1, group = part->group, last, k, i, *local;
     gproj_term *term = form->work.term;
-    if (tangential) {
+    if (part->rule->acts) {
         for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
         for (k = 0; k < 2; ++k) gproji_add_row(form->system, group, 3 * points, term, 0, d->element);
-        tangential->element[tangential->count++] = d->element;
+        part->element[part->count++] = d->element;
         return;
     }
     /* Successive rows share their terms if they have equally many points. */
@@ -19933,9 +19921,8 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
 
 /* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
    four, else the mean of all (paper 3.2). */
-GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
-                                                 int32_t centre, int32_t count, int32_t element) {
-    const int32_t *ring = form->work.ring;
+GPROJI_INTERNAL void gproji_add_ring_differences(gproji_part *part, int32_t centre, int32_t count, int32_t element) {
+    const int32_t *ring = part->form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
     d.element = element, d.centre = centre, d.count = count, d.neighbour = ring;
@@ -19943,10 +19930,10 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
         pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        gproji_add_difference(form, group, tangential, &d);
+        gproji_add_difference(part, &d);
         d.neighbour = pairs + 2;
     }
-    gproji_add_difference(form, group, tangential, &d);
+    gproji_add_difference(part, &d);
 }
 
 /* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
@@ -19964,17 +19951,19 @@ GPROJI_RULE(gproji_boundary_fairness_rule, "boundary fairness", GPROJ_WISH, GPRO
 
 /* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
 GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    int32_t group = gproji_new_group(form, rule, weight), v, h, pair[2];
+    gproji_part *part = gproji_open_part(form, rule, 0, weight);
     bool inside = rule != &gproji_boundary_fairness_rule;
     const gproj_mesh *mesh;
     gproji_difference d;
     size_t vertices;
-    if (group < 0) return -1;
+    int32_t v, h, pair[2];
+    if (!part) return -1;
     mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
-    if (inside) gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
+    if (inside)
+        gproji_expect_group(form, part->group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
     for (v = 0; inside && v < mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
+        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
     }
     for (v = 0; v < mesh->vertex_count; ++v) {
         if (!gproji_select_gliding(form, v)) continue;
@@ -19982,9 +19971,9 @@ GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule 
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
         d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
-        gproji_add_difference(form, group, NULL, &d);
+        gproji_add_difference(part, &d);
     }
-    return gproji_built(form, group);
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
@@ -20035,7 +20024,7 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
     if (!part) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v);
+        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
     }
     return gproji_built(form, part->group);
 }
@@ -20075,7 +20064,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
             count += neighbour >= 0;
         }
-        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f);
+        if (count == degree) gproji_add_ring_differences(part, form->normal[f], degree, f);
         /* A quad at the boundary still has a difference if it has two opposite neighbours. */
         for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
             gproji_difference d;
@@ -20084,7 +20073,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
             d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
-            gproji_add_difference(form, part->group, part, &d);
+            gproji_add_difference(part, &d);
         }
     }
     return gproji_built(form, part->group);
@@ -22934,7 +22923,7 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, double *held, d
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
             size_t v = 3 * (size_t)part->element[i], c;
-            bool corner = !gproji_curve_at(part, i);
+            bool corner = !((const gproji_gliding *)part->data)->curve[i];
             if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
             if (corner) gproji_copy3(form->original + v, value + v);
             for (c = v; c < v + 3; ++c) held[c] = corner ? 1 : held[c] == 0 ? -1 : held[c];
