@@ -13495,7 +13495,6 @@ GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
            _wsopen_s(&file->descriptor, wide.text, _O_RDONLY | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD) == 0;
 }
 
-/* Makes a new file. */
 GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
     gproji_wide_path wide;
     (void)old;
@@ -13504,7 +13503,6 @@ GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, con
                      _SH_DENYNO, _S_IREAD | _S_IWRITE) == 0;
 }
 
-/* The number of bytes read; 0 at the end, less than 0 after an error. */
 GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
     return _read(file->descriptor, text, size < INT32_MAX ? (unsigned int)size : INT32_MAX);
 }
@@ -13566,7 +13564,6 @@ GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, con
     return file->stream != NULL;
 }
 
-/* The number of bytes read; 0 at the end, less than 0 after an error. */
 GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
     size_t got = fread(text, 1, size, file->stream);
     return got == 0 && ferror(file->stream) ? -1 : (int64_t)got;
@@ -15540,16 +15537,13 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
     GPROJI_EDIT_EDGE,
-    GPROJI_EDIT_FACE, /* these three are numbered */
+    GPROJI_EDIT_FACE,
     GPROJI_EDIT_HALFEDGE,
     GPROJI_EDIT_POSITION,
     GPROJI_EDIT_POLYLINE_START,
     GPROJI_EDIT_POLYLINE_VERTEX,
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
-enum {
-    GPROJI_EDIT_NUMBERED = GPROJI_EDIT_FACE + 1
-};
 
 /* Arrays of each kind, one after the other in a block, and the size of their elements. */
 static const struct {
@@ -15737,12 +15731,11 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
 /* Is a number in the range for vertices, edges or faces? */
 GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, int32_t number,
                                      gproj_error *error) {
-    static const gproj_place place[GPROJI_EDIT_NUMBERED] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
-    static const char *const noun[GPROJI_EDIT_NUMBERED] = {"vertex", "edge", "face"};
+    static const gproj_place place[] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
     int32_t count = object->now.count[kind];
     if (number >= 0 && number < count) return true;
     return gproji_fail(error, GPROJ_ERROR_INDEX, place[kind], number, "%s %d does not exist: they are 0 to %d",
-                       noun[kind], number, count - 1) == GPROJ_OK;
+                       gproji_place_word(place[kind]), number, count - 1) == GPROJ_OK;
 }
 
 /* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed or is none, or if t is not
@@ -19630,7 +19623,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
         gproj_system_set_schedule(form->system, form->planarity, gproj_keep(weight));
-        return gproji_form_ready(form) ? form->planarity : -1;
+        return gproji_built(form, form->planarity);
     }
     mesh = form->mesh;
     part = gproji_open_part(form, &gproji_planarity_rule, mesh->face_count, weight);
