@@ -12687,6 +12687,11 @@ GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32
 /* The outgoing half-edge after h around the same vertex, counter-clockwise. */
 GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
 
+/* The position of a half-edge's origin; with other positions than the mesh's, too. */
+GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
+    return position + 3 * (size_t)mesh->origin[halfedge];
+}
+
 GPROJI_INTERNAL gproj_code gproji_fail_fans(int32_t vertex, gproj_error *error) {
     return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_VERTEX, vertex,
                        "the faces at vertex %d form more than one fan, as where two cones touch; give each fan a "
@@ -12814,9 +12819,10 @@ GPROJI_INTERNAL gproj_code gproji_mesh_connect(gproji_mesh_object *object, const
     return pool->failed ? gproji_fail_memory(error) : GPROJ_OK;
 }
 
-/* Checks how many vertices and faces there are, and counts the corners of all faces, the entries of face_vertex. */
+/* Checks how many vertices and faces there are, and counts the corners of all faces, the entries of face_vertex.
+   Without face_degree all faces have `degree` corners. */
 GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t vertex_count, int32_t face_count, const int32_t *face_degree,
-                                                int64_t *corners, gproj_error *error) {
+                                                int32_t degree, int64_t *corners, gproj_error *error) {
     int32_t f;
     *corners = 0;
     if (vertex_count < 1)
@@ -12827,10 +12833,11 @@ GPROJI_INTERNAL gproj_code gproji_count_corners(int32_t vertex_count, int32_t fa
                            "the mesh has %d vertices, more than %d; split it", vertex_count,
                            (int32_t)GPROJI_VERTICES_MAX);
     for (f = 0; f < face_count; ++f) {
-        if (face_degree[f] < 3)
+        if (face_degree) degree = face_degree[f];
+        if (degree < 3)
             return gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_FACE, f,
-                               "face %d has %d corners; a face needs at least 3", f, face_degree[f]);
-        *corners += face_degree[f];
+                               "face %d has %d corners; a face needs at least 3", f, degree);
+        *corners += degree;
         if (*corners > GPROJI_CORNERS_MAX)
             return gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_FACE, f,
                                "the faces up to face %d have more than %d corners; split the mesh", f,
@@ -12845,7 +12852,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     gproji_mesh_work work;
     gproj_code code;
     int64_t corners = 0;
-    code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, &corners, error);
+    code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, 0, &corners, error);
     if (code) return code;
     code = gproji_check_positions(soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
@@ -12946,15 +12953,11 @@ GPROJ_API gproj_mesh *gproj_mesh_create(int32_t vertex_count, const double *posi
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gproj_host *host, gproj_error *error) {
-    gproji_heap heap = gproji_heap_of(host);
-    gproji_pool pool;
-    gproj_mesh *mesh = NULL;
-    double *position = NULL;
-    int32_t *degree, *vertex = NULL, f;
-    int64_t corners = 0, k;
+    gproji_draft draft;
+    int64_t corners, k;
+    int32_t f;
     size_t size = data && data->position ? sizeof(double) : sizeof(float), stride;
     const char *wrong = NULL, *from;
-    gproj_code code;
     /* 1. No array may be missing or given twice, and no stride too short. */
     gproji_error_clear(error);
     if (!data)
@@ -12968,31 +12971,25 @@ GPROJ_API gproj_mesh *gproj_mesh_from_data(const gproj_mesh_data *data, const gp
     else if (data->face_count > 0 && !data->face_degree && data->degree == 0)
         wrong = "either face_degree or degree is needed";
     if (wrong) gproji_refuse(error, "mesh data: %s", wrong);
-    if (wrong) return NULL;
     /* 2. Room, for as many corners as the degrees sum up to. */
-    gproji_pool_start(&pool, &heap);
-    degree = gproji_take_ints(&pool, gproji_max(0, data->face_count));
-    for (f = 0; degree && f < data->face_count; ++f)
-        degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
-    code = degree ? gproji_count_corners(data->vertex_count, data->face_count, degree, &corners, error)
-                  : gproji_fail_memory(error);
-    if (!code) position = (double *)gproji_pool_take(&pool, data->vertex_count, 3 * sizeof *position);
-    if (!code) vertex = (int32_t *)gproji_pool_take(&pool, corners, sizeof *vertex);
-    if (!code && !(position && vertex)) code = gproji_fail_memory(error);
+    if (wrong ||
+        gproji_count_corners(data->vertex_count, data->face_count, data->face_degree, data->degree, &corners, error) ||
+        !gproji_draft_begin(&draft, data->vertex_count, data->face_count, corners, 0, 0, host, error))
+        return NULL;
     /* 3. The mesh. Strides may leave numbers at odd addresses: hence memcpy. */
     stride = data->position_stride ? data->position_stride : 3 * size;
     from = data->position ? (const char *)data->position : (const char *)data->float_position;
-    for (k = 0; !code && k < 3 * (int64_t)data->vertex_count; ++k) {
+    for (k = 0; k < 3 * (int64_t)data->vertex_count; ++k) {
         const char *at = from + (size_t)(k / 3) * stride + (size_t)(k % 3) * size;
         float number = 0;
-        memcpy(data->position ? (void *)&position[k] : (void *)&number, at, size);
-        if (!data->position) position[k] = number;
+        memcpy(data->position ? (void *)&draft.position[k] : (void *)&number, at, size);
+        if (!data->position) draft.position[k] = number;
     }
-    for (k = 0; !code && k < corners; ++k)
-        vertex[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
-    if (!code) mesh = gproj_mesh_create(data->vertex_count, position, data->face_count, degree, vertex, host, error);
-    gproji_pool_give_all(&pool);
-    return mesh;
+    for (f = 0; f < data->face_count; ++f) draft.degree[f] = data->face_degree ? data->face_degree[f] : data->degree;
+    for (k = 0; k < corners; ++k)
+        draft.corner[k] = data->face_vertex ? data->face_vertex[k] : data->short_face_vertex[k];
+    draft.soup.vertex_count = data->vertex_count, draft.soup.face_count = data->face_count;
+    return gproji_draft_end(&draft, GPROJ_OK);
 }
 
 GPROJ_API gproj_mesh *gproj_mesh_copy(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error) {
@@ -13073,20 +13070,20 @@ GPROJI_INTERNAL bool gproji_is_corner(const gproj_mesh *mesh, const double *posi
     if (!gproj_mesh_is_boundary_vertex(mesh, vertex)) return false;
     if (gproj_mesh_valence(mesh, vertex) == 2) return true;
     h = mesh->vertex_halfedge[vertex]; /* leaves along the boundary; prev[h] enters along it */
-    return gproji_turns(position + 3 * (size_t)mesh->origin[mesh->prev[h]], position + 3 * (size_t)vertex,
-                        position + 3 * (size_t)mesh->origin[h ^ 1]);
+    return gproji_turns(gproji_corner_at(mesh, position, mesh->prev[h]), position + 3 * (size_t)vertex,
+                        gproji_corner_at(mesh, position, h ^ 1));
 }
 
 /* The vectorial area of a face with other positions: 1/2 sum (v_i - v_0) x (v_(i+1) - v_0), which equals the sum in the
    interface but has no cancellation far from the origin. */
 GPROJI_INTERNAL void gproji_area_vector(const gproj_mesh *mesh, const double *position, int32_t face, double area[3]) {
     int32_t start = mesh->face_halfedge[face], h;
-    const double *base = position + 3 * (size_t)mesh->origin[start];
+    const double *base = gproji_corner_at(mesh, position, start);
     double a[3], b[3], cross[3];
     gproji_set3(0, 0, 0, area);
     for (h = mesh->next[start]; mesh->next[h] != start; h = mesh->next[h]) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[h], base, a);
-        gproji_sub3(position + 3 * (size_t)mesh->origin[mesh->next[h]], base, b);
+        gproji_sub3(gproji_corner_at(mesh, position, h), base, a);
+        gproji_sub3(gproji_corner_at(mesh, position, mesh->next[h]), base, b);
         gproji_cross3(a, b, cross);
         gproji_add_scaled3(0.5, cross, area);
     }
@@ -13116,7 +13113,7 @@ GPROJI_INTERNAL double gproji_mean_edge(const gproj_mesh *mesh, const double *po
     if (!(sum < 1e-140)) return sum;
     /* squares underflow in edges as short as these: measure them again in a smaller unit */
     for (sum = 0, h = 0; h < mesh->halfedge_count; h += 2) {
-        gproji_sub3(position + 3 * (size_t)mesh->origin[h], position + 3 * (size_t)mesh->origin[h + 1], d);
+        gproji_sub3(gproji_corner_at(mesh, position, h), gproji_corner_at(mesh, position, h + 1), d);
         for (k = 0; k < 3; ++k) d[k] /= unit;
         sum += gproji_length3(d);
     }
@@ -13307,7 +13304,6 @@ GPROJI_INTERNAL bool gproji_file_open(gproji_file *file, const char *path) {
            _wsopen_s(&file->descriptor, wide.text, _O_RDONLY | _O_BINARY | _O_NOINHERIT, _SH_DENYNO, _S_IREAD) == 0;
 }
 
-/* Makes a new file. */
 GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, const gproji_old_file *old) {
     gproji_wide_path wide;
     (void)old;
@@ -13316,7 +13312,6 @@ GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, con
                      _SH_DENYNO, _S_IREAD | _S_IWRITE) == 0;
 }
 
-/* The number of bytes read; 0 at the end, less than 0 after an error. */
 GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
     return _read(file->descriptor, text, size < INT32_MAX ? (unsigned int)size : INT32_MAX);
 }
@@ -13378,7 +13373,6 @@ GPROJI_INTERNAL bool gproji_file_create(gproji_file *file, const char *path, con
     return file->stream != NULL;
 }
 
-/* The number of bytes read; 0 at the end, less than 0 after an error. */
 GPROJI_INTERNAL int64_t gproji_file_read(gproji_file *file, char *text, size_t size) {
     size_t got = fread(text, 1, size, file->stream);
     return got == 0 && ferror(file->stream) ? -1 : (int64_t)got;
@@ -14133,6 +14127,7 @@ enum {
 /* Owns a gproj_stencil and the arrays that `stencil` shows read-only. */
 typedef struct gproji_stencil_object {
     gproji_heap heap; /* first: see gproji_create_object */
+    gproji_pool pool; /* all arrays */
     gproj_stencil stencil;
     int64_t *start;
     int32_t *column;
@@ -14148,9 +14143,7 @@ GPROJ_API void gproj_stencil_destroy(gproj_stencil *stencil) {
     gproji_stencil_object *object;
     if (!stencil) return;
     object = gproji_stencil_owner(stencil);
-    gproji_give(&object->heap, object->start, (size_t)stencil->row_count + 1, sizeof *object->start);
-    gproji_give(&object->heap, object->column, object->column_capacity, sizeof *object->column);
-    gproji_give(&object->heap, object->weight, object->weight_capacity, sizeof *object->weight);
+    gproji_pool_give_all(&object->pool);
     gproji_destroy_object(object, sizeof *object);
 }
 
@@ -14160,12 +14153,12 @@ GPROJ_API gproj_memory gproj_stencil_memory(const gproj_stencil *stencil) {
 
 /* Makes room for `entries` entries; false when there is no memory. */
 GPROJI_INTERNAL bool gproji_stencil_reserve(gproji_stencil_object *object, size_t entries) {
-    gproj_stencil *stencil = &object->stencil;
-    stencil->column = object->column =
-        (int32_t *)gproji_grow(&object->heap, object->column, &object->column_capacity, entries, sizeof(int32_t));
-    stencil->weight = object->weight =
-        (double *)gproji_grow(&object->heap, object->weight, &object->weight_capacity, entries, sizeof(double));
-    return object->column_capacity >= entries && object->weight_capacity >= entries;
+    gproji_pool *pool = &object->pool;
+    object->stencil.column = object->column =
+        (int32_t *)gproji_pool_grow(pool, object->column, &object->column_capacity, entries, sizeof(int32_t));
+    object->stencil.weight = object->weight =
+        (double *)gproji_pool_grow(pool, object->weight, &object->weight_capacity, entries, sizeof(double));
+    return !pool->failed;
 }
 
 /* Creates a stencil whose rows are all empty, with room for `entries` entries; NULL, and no error is set, when there is
@@ -14175,10 +14168,12 @@ GPROJI_INTERNAL gproj_stencil *gproji_stencil_create(int32_t rows, int32_t colum
     gproji_stencil_object *object = (gproji_stencil_object *)gproji_create_object(host, sizeof *object, NULL);
     gproj_stencil *stencil;
     if (!object) return NULL;
+    gproji_pool_start(&object->pool, &object->heap);
     stencil = &object->stencil;
     stencil->row_count = rows, stencil->column_count = columns;
-    stencil->start = object->start = (int64_t *)gproji_take_zeroed(&object->heap, (size_t)rows + 1, sizeof(int64_t));
-    if (object->start && gproji_stencil_reserve(object, entries)) return stencil;
+    stencil->start = object->start =
+        (int64_t *)gproji_pool_take_zeroed(&object->pool, (int64_t)rows + 1, sizeof(int64_t));
+    if (gproji_stencil_reserve(object, entries)) return stencil;
     gproj_stencil_destroy(stencil);
     return NULL;
 }
@@ -14230,23 +14225,22 @@ GPROJ_API void gproj_stencil_apply(const gproj_stencil *stencil, int32_t size, c
 
 /* A stencil, a sparse matrix, that is made row by row; gproji_builder_end reports missing memory. */
 typedef struct gproji_builder {
-    gproji_heap heap; /* gives `place` */
     const gproj_host *host;
-    gproj_stencil *stencil;
-    bool failed; /* no memory: nothing more is added */
-    int32_t column_count;
-    int32_t row;    /* the one that is being made */
-    int64_t count;  /* all entries so far */
+    gproj_stencil *stencil; /* place is in the same pool */
+    bool failed;            /* no memory: nothing more is added */
+    int32_t row;            /* the one that is being made */
+    int64_t count;          /* all entries so far */
     int64_t *place; /* column_count: the column's entry in this row, plus 1; not beyond the row's start: none yet */
 } gproji_builder;
 
 GPROJI_INTERNAL void gproji_builder_begin(gproji_builder *builder, int32_t row_count, int32_t column_count,
                                           const gproj_host *host) {
-    builder->heap = gproji_heap_of(host), builder->host = host;
-    builder->column_count = column_count, builder->row = 0, builder->count = 0;
-    builder->place = (int64_t *)gproji_take_zeroed(&builder->heap, (size_t)column_count, sizeof *builder->place);
+    builder->host = host, builder->row = 0, builder->count = 0, builder->place = NULL;
     builder->stencil = gproji_stencil_create(row_count, column_count, 8 * (size_t)row_count, host);
-    builder->failed = !builder->place || !builder->stencil;
+    if (builder->stencil)
+        builder->place = (int64_t *)gproji_pool_take_zeroed(&gproji_stencil_owner(builder->stencil)->pool, column_count,
+                                                            sizeof *builder->place);
+    builder->failed = !builder->place;
 }
 
 /* Adds a weight to an entry in the row, which is appended when it is new. */
@@ -14272,7 +14266,6 @@ GPROJI_INTERNAL void gproji_builder_next(gproji_builder *builder) {
 /* Finishes the stencil; NULL when there is no memory. */
 GPROJI_INTERNAL gproj_stencil *gproji_builder_end(gproji_builder *builder, gproj_error *error) {
     gproj_stencil *turned = NULL, *sorted = NULL;
-    gproji_give(&builder->heap, builder->place, (size_t)builder->column_count, sizeof *builder->place);
     /* transposing twice sorts the columns in all rows, in linear time */
     if (!builder->failed) turned = gproji_transposed(builder->stencil, builder->host);
     gproj_stencil_destroy(builder->stencil);
@@ -14286,7 +14279,7 @@ GPROJI_INTERNAL gproj_stencil *gproji_builder_end(gproji_builder *builder, gproj
 
 /* A level of a subdivision, and the way to the next one. Meshes and stencils have their own memory. */
 typedef struct gproji_subdivision {
-    gproji_heap heap; /* gives sharpness and corner */
+    gproji_pool pool; /* sharpness and corner, on all levels so far */
     const gproj_host *host;
     gproj_error *error;
     gproj_scheme scheme;
@@ -14580,7 +14573,7 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
     const gproj_mesh *mesh = s->mesh;
     gproj_stencil *step = gproji_level_stencil(s), *both;
     gproj_mesh *fine = step ? gproji_level_mesh(s, step) : NULL;
-    double *sharpness = fine ? (double *)gproji_take_zeroed(&s->heap, (size_t)fine->edge_count, sizeof(double)) : NULL;
+    double *sharpness = fine ? (double *)gproji_pool_take_zeroed(&s->pool, fine->edge_count, sizeof(double)) : NULL;
     int32_t f, k, at = 0;
     if (!sharpness) {
         gproj_mesh_destroy(fine);
@@ -14599,7 +14592,6 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
         if (s->scheme == GPROJ_LOOP) ++at; /* the face in the middle */
     }
     /* 2. The fine mesh takes the coarse one's place. */
-    gproji_give(&s->heap, s->sharpness, (size_t)mesh->edge_count, sizeof(double));
     gproj_mesh_destroy(s->own);
     s->sharpness = sharpness;
     s->mesh = s->own = fine;
@@ -14618,6 +14610,7 @@ GPROJI_INTERNAL gproj_code gproji_subdivision_next(gproji_subdivision *s, bool k
 GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_subdivide_options *options,
                                            gproj_stencil **stencil, const gproj_host *host, gproj_error *error) {
     gproj_subdivide_options given;
+    gproji_heap heap = gproji_heap_of(host);
     gproji_subdivision s;
     gproj_code code = GPROJ_OK;
     double *sharpness;
@@ -14630,12 +14623,12 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     if (given.levels == 0) given.levels = 1;
     if (gproji_check_subdivision(mesh, &given, error)) return NULL;
     memset(&s, 0, sizeof s);
-    s.heap = gproji_heap_of(host);
+    gproji_pool_start(&s.pool, &heap);
     s.host = host, s.error = error;
     s.mesh = mesh, s.scheme = given.scheme, s.corner_count = mesh->vertex_count;
-    s.sharpness = sharpness = (double *)gproji_take_zeroed(&s.heap, (size_t)mesh->edge_count, sizeof(double));
-    s.corner = corner = (bool *)gproji_take_zeroed(&s.heap, (size_t)mesh->vertex_count, sizeof(bool));
-    if (!sharpness || !corner) code = gproji_fail_memory(error);
+    s.sharpness = sharpness = (double *)gproji_pool_take_zeroed(&s.pool, mesh->edge_count, sizeof(double));
+    s.corner = corner = (bool *)gproji_pool_take_zeroed(&s.pool, mesh->vertex_count, sizeof(bool));
+    if (s.pool.failed) code = gproji_fail_memory(error);
     /* 1. Sharp edges and corners on the first level: the boundary's, then the caller's. */
     for (k = 0; !code && k < mesh->edge_count; ++k)
         if (mesh->face[2 * k + 1] < 0) sharpness[k] = GPROJI_SHARP;
@@ -14649,8 +14642,7 @@ GPROJ_API gproj_mesh *gproj_mesh_subdivide(const gproj_mesh *mesh, const gproj_s
     /* 2. The levels. */
     for (level = 0; !code && level < given.levels; ++level)
         code = gproji_subdivision_next(&s, stencil && level >= given.stencil_level);
-    gproji_give(&s.heap, corner, (size_t)mesh->vertex_count, sizeof(bool));
-    gproji_give(&s.heap, s.sharpness, (size_t)s.mesh->edge_count, sizeof(double));
+    gproji_pool_give_all(&s.pool);
     if (code) {
         gproj_mesh_destroy(s.own);
         gproj_stencil_destroy(s.stencil);
@@ -15058,7 +15050,7 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
     if (!curve) return NULL;
     /* with the faces' edges, that is against the boundary half-edges */
     for (count = 0; count <= curve->segment_count; ++count, h = mesh->prev[h])
-        gproji_copy3(mesh->position + 3 * (size_t)mesh->origin[h], curve->point + 3 * (size_t)count);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, h), curve->point + 3 * (size_t)count);
     return gproji_curve_finish(curve, true, error);
 }
 
@@ -15153,10 +15145,10 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
     gproj_mesh_face_area_vector(mesh, face, n);
     gproji_normalise3(n, gproji_up);
     gproji_tangents3(n, u, v);
-    first = mesh->position + 3 * (size_t)mesh->origin[h];
+    first = gproji_corner_at(mesh, mesh->position, h);
     polygon->count = mesh->face_degree[face], polygon->ears = 0;
     for (i = 0; i < polygon->count; ++i, h = mesh->next[h]) {
-        gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[h], first, d);
+        gproji_sub3(gproji_corner_at(mesh, mesh->position, h), first, d);
         polygon->xy[2 * (size_t)i] = gproji_dot3(d, u);
         polygon->xy[2 * (size_t)i + 1] = gproji_dot3(d, v);
         polygon->vertex[i] = mesh->origin[h];
@@ -15296,9 +15288,9 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
         gproj_mesh_face_area_vector(mesh, f, n);
         if (!gproji_normalise3(n, gproji_zero)) continue;
         for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            const double *x = mesh->position + 3 * (size_t)mesh->origin[h];
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->prev[h]], x, a);
-            gproji_sub3(mesh->position + 3 * (size_t)mesh->origin[mesh->next[h]], x, b);
+            const double *x = gproji_corner_at(mesh, mesh->position, h);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, mesh->prev[h]), x, a);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, mesh->next[h]), x, b);
             gproji_cross3(a, b, cross);
             gproji_add_scaled3(atan2(gproji_length3(cross), gproji_dot3(a, b)), n,
                                surface->normal + 3 * (size_t)mesh->origin[h]);
@@ -15354,16 +15346,13 @@ GPROJ_API gproj_surface_hit gproj_surface_closest(const gproj_surface *surface, 
 typedef enum gproji_edit_kind {
     GPROJI_EDIT_VERTEX,
     GPROJI_EDIT_EDGE,
-    GPROJI_EDIT_FACE, /* these three are numbered */
+    GPROJI_EDIT_FACE,
     GPROJI_EDIT_HALFEDGE,
     GPROJI_EDIT_POSITION,
     GPROJI_EDIT_POLYLINE_START,
     GPROJI_EDIT_POLYLINE_VERTEX,
     GPROJI_EDIT_KINDS
 } gproji_edit_kind;
-enum {
-    GPROJI_EDIT_NUMBERED = GPROJI_EDIT_FACE + 1
-};
 
 /* Arrays of each kind, one after the other in a block, and the size of their elements. */
 static const struct {
@@ -15374,6 +15363,7 @@ static const struct {
 
 /* An edit's state, which a copy to go back to must have. */
 typedef struct gproji_edit_store {
+    gproji_pool pool; /* all blocks */
     int32_t count[GPROJI_EDIT_KINDS];
     int32_t room[GPROJI_EDIT_KINDS];
     void *block[GPROJI_EDIT_KINDS]; /* rows * room elements: the arrays below */
@@ -15432,42 +15422,22 @@ GPROJI_INTERNAL void gproji_edit_publish(gproji_edit_object *object) {
     edit->origin = view->origin = s->origin, edit->face = view->face = s->face;
 }
 
-GPROJI_INTERNAL void gproji_edit_give(gproji_heap *heap, gproji_edit_store *s) {
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
-        gproji_give(heap, s->block[kind], (size_t)s->room[kind],
-                    gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
-}
-
-/* Takes the blocks for a store's rooms; after a failure those that were taken can be given back. */
-GPROJI_INTERNAL bool gproji_edit_take(gproji_heap *heap, gproji_edit_store *s) {
-    bool complete = true;
-    int32_t kind;
-    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind) {
-        size_t size = gproji_edit_block[kind].rows * gproji_edit_block[kind].size;
-        s->block[kind] = gproji_take_zeroed(heap, (size_t)s->room[kind], size);
-        complete = complete && s->block[kind];
-    }
-    return complete;
-}
-
 /* Makes a copy to go back to; false without memory. */
 GPROJI_INTERNAL bool gproji_edit_save(gproji_edit_object *object, gproji_edit_store *copy) {
-    const gproji_edit_store *s = &object->now;
-    bool complete;
     int32_t kind;
-    *copy = *s;
-    complete = gproji_edit_take(&object->heap, copy);
-    for (kind = 0; complete && kind < GPROJI_EDIT_KINDS; ++kind)
-        memcpy(copy->block[kind], s->block[kind],
-               (size_t)s->room[kind] * gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
-    if (!complete) gproji_edit_give(&object->heap, copy);
-    return complete;
+    *copy = object->now;
+    gproji_pool_start(&copy->pool, &object->heap);
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        copy->block[kind] = gproji_pool_copy(&copy->pool, copy->block[kind], copy->room[kind],
+                                             gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (!copy->pool.failed) return true;
+    gproji_pool_give_all(&copy->pool);
+    return false;
 }
 
 /* Ends work that began with gproji_edit_save: goes back to the copy after an error, which is returned. */
 GPROJI_INTERNAL gproj_code gproji_edit_settle(gproji_edit_object *object, gproji_edit_store *copy, gproj_code code) {
-    gproji_edit_give(&object->heap, code ? &object->now : copy);
+    gproji_pool_give_all(code ? &object->now.pool : &copy->pool);
     if (code) object->now = *copy;
     gproji_edit_publish(object);
     return code;
@@ -15494,12 +15464,13 @@ GPROJI_INTERNAL gproj_code gproji_edit_reserve(gproji_edit_object *object, int64
         char *block;
         if (needed <= old) continue;
         room = gproji_max(needed, 2 * old); /* n additions cost O(n); old < needed, at most half the largest int32_t */
-        block = (char *)gproji_take_zeroed(&object->heap, (size_t)room, rows * size);
+        block = (char *)gproji_pool_retake(&s->pool, s->block[kind], (size_t)room, rows * size);
         if (!block) return gproji_fail_memory(error);
-        for (r = 0; r < rows; ++r)
-            memcpy(block + r * (size_t)room * size, (char *)s->block[kind] + r * (size_t)old * size,
-                   (size_t)s->count[kind] * size);
-        gproji_give(&object->heap, s->block[kind], (size_t)old, rows * size);
+        for (r = rows; r-- > 0;) { /* the last array moves first */
+            char *array = block + r * (size_t)room * size;
+            memmove(array, block + r * (size_t)old * size, (size_t)old * size);
+            memset(array + (size_t)old * size, 0, (size_t)(room - old) * size);
+        }
         s->block[kind] = block, s->room[kind] = room;
         gproji_edit_publish(object);
     }
@@ -15569,12 +15540,11 @@ GPROJI_INTERNAL gproji_edit_object *gproji_edit_owner(gproj_edit *edit, gproj_er
 /* Is a number in the range for vertices, edges or faces? */
 GPROJI_INTERNAL bool gproji_edit_has(const gproji_edit_object *object, gproji_edit_kind kind, int32_t number,
                                      gproj_error *error) {
-    static const gproj_place place[GPROJI_EDIT_NUMBERED] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
-    static const char *const noun[GPROJI_EDIT_NUMBERED] = {"vertex", "edge", "face"};
+    static const gproj_place place[] = {GPROJ_PLACE_VERTEX, GPROJ_PLACE_EDGE, GPROJ_PLACE_FACE};
     int32_t count = object->now.count[kind];
     if (number >= 0 && number < count) return true;
     return gproji_fail(error, GPROJ_ERROR_INDEX, place[kind], number, "%s %d does not exist: they are 0 to %d",
-                       noun[kind], number, count - 1) == GPROJ_OK;
+                       gproji_place_word(place[kind]), number, count - 1) == GPROJ_OK;
 }
 
 /* Half-edge 2e for the edge e that a number stands for; -1 and an error if it was collapsed or is none, or if t is not
@@ -15807,7 +15777,7 @@ GPROJI_INTERNAL gproj_code gproji_check_collapse(gproji_edit_object *object, int
 GPROJ_API void gproj_edit_destroy(gproj_edit *edit) {
     gproji_edit_object *object = edit ? gproji_edit_owner(edit, NULL) : NULL;
     if (!object) return;
-    gproji_edit_give(&object->heap, &object->now);
+    gproji_pool_give_all(&object->now.pool);
     gproji_pool_give_all(&object->numbers);
     gproji_destroy_object(object, sizeof *object);
 }
@@ -15816,19 +15786,23 @@ GPROJ_API gproj_edit *gproj_edit_create(const gproj_mesh *mesh, const gproj_host
     gproji_edit_object *object;
     gproji_edit_store *s;
     size_t vertices, halfedges, faces;
-    int32_t polylines, i;
+    int32_t polylines, kind, i;
     if (!gproji_given(mesh, "mesh to edit", error)) return NULL;
     object = (gproji_edit_object *)gproji_create_object(host, sizeof *object, error);
     if (!object) return NULL;
     gproji_pool_start(&object->numbers, &object->heap);
     s = &object->now;
+    gproji_pool_start(&s->pool, &object->heap);
     s->polyline_count = mesh->polyline_count, polylines = mesh->polyline_start[mesh->polyline_count];
     s->count[GPROJI_EDIT_VERTEX] = s->count[GPROJI_EDIT_POSITION] = mesh->vertex_count;
     s->count[GPROJI_EDIT_EDGE] = mesh->edge_count, s->count[GPROJI_EDIT_HALFEDGE] = mesh->halfedge_count;
     s->count[GPROJI_EDIT_FACE] = mesh->face_count, s->count[GPROJI_EDIT_POLYLINE_START] = s->polyline_count + 1;
     s->count[GPROJI_EDIT_POLYLINE_VERTEX] = polylines;
     memcpy(s->room, s->count, sizeof s->room);
-    if (!gproji_edit_take(&object->heap, s)) {
+    for (kind = 0; kind < GPROJI_EDIT_KINDS; ++kind)
+        s->block[kind] = gproji_pool_take_zeroed(&s->pool, s->room[kind],
+                                                 gproji_edit_block[kind].rows * gproji_edit_block[kind].size);
+    if (s->pool.failed) {
         gproji_fail_memory(error);
         gproj_edit_destroy(&object->edit);
         return NULL;
@@ -16235,7 +16209,7 @@ GPROJI_INTERNAL int32_t gproji_dual_add(const gproj_mesh *mesh, gproji_dual *dua
     double *x = dual->draft.position + 3 * (size_t)number;
     gproji_set3(0, 0, 0, x);
     for (k = 0; k < count; ++k, h = mesh->next[h])
-        gproji_add_scaled3(1.0 / count, mesh->position + 3 * (size_t)mesh->origin[h], x);
+        gproji_add_scaled3(1.0 / count, gproji_corner_at(mesh, mesh->position, h), x);
     return number;
 }
 
@@ -16268,7 +16242,7 @@ GPROJI_INTERNAL void gproji_dual_polylines(const gproj_mesh *mesh, gproji_dual *
 
 /* Drafts the dual mesh: a vertex for each face, boundary edge, corner and isolated vertex, a face for each vertex.
    vertex_face: the face of each vertex, or NULL. */
-GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
+GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual *dual, int32_t *vertex_face,
                                              gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
@@ -16312,7 +16286,7 @@ GPROJI_INTERNAL gproj_code gproji_draft_dual(const gproj_mesh *mesh, gproji_dual
 
 /* Drafts the mesh along the diagonals: a vertex for each edge, corner and isolated vertex, a face for each face and
    each vertex with faces. */
-GPROJI_INTERNAL gproj_code gproji_draft_diagonals(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_diagonals_build(const gproj_mesh *mesh, gproji_dual *dual, gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
     int32_t e, f, v, k, h;
@@ -16369,7 +16343,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagon
         code = gproji_fail_memory(error);
     else
         code =
-            diagonals ? gproji_draft_diagonals(mesh, &dual, error) : gproji_draft_dual(mesh, &dual, vertex_face, error);
+            diagonals ? gproji_diagonals_build(mesh, &dual, error) : gproji_dual_build(mesh, &dual, vertex_face, error);
     return gproji_draft_end(&dual.draft, code);
 }
 
@@ -16416,14 +16390,6 @@ GPROJI_INTERNAL void gproji_jacobi_sweep(double m[3][3], double v[3][3]) {
             m[p][k] = c * mp - s * mq, m[q][k] = s * mp + c * mq;
         }
     }
-}
-
-GPROJI_INTERNAL const double *gproji_corner_position(const gproj_mesh *mesh, int32_t halfedge) {
-    return mesh->position + 3 * (size_t)mesh->origin[halfedge];
-}
-
-GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
-    return position + 3 * (size_t)mesh->origin[halfedge];
 }
 
 /* Finds the least-squares plane of `count` vertices: vertex[h], h = first, next[first], ..., or first, first + 1, ...
@@ -16485,7 +16451,7 @@ GPROJI_INTERNAL double gproji_face_planarity(const gproj_mesh *mesh, int32_t fac
     double d[3], worst = 0;
     int32_t h = mesh->face_halfedge[face], k;
     for (k = 0; mesh->face_degree[face] > 3 && k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        gproji_sub3(gproji_corner_position(mesh, h), mean, d);
+        gproji_sub3(gproji_corner_at(mesh, mesh->position, h), mean, d);
         worst = gproji_fmax(worst, fabs(gproji_dot3(normal, d)));
     }
     return worst;
@@ -16643,8 +16609,8 @@ GPROJI_INTERNAL double gproji_angle_sum(const gproj_mesh *mesh, const double *x,
     int32_t start = mesh->vertex_halfedge[vertex], h = start;
     do {
         int32_t next = gproji_rotate(mesh, h);
-        gproji_sub3(x + 3 * (size_t)mesh->origin[next ^ 1], middle, a);
-        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], middle, b);
+        gproji_sub3(gproji_corner_at(mesh, x, next ^ 1), middle, a);
+        gproji_sub3(gproji_corner_at(mesh, x, h ^ 1), middle, b);
         gproji_cross3(a, b, cross);
         if (mesh->face[h] >= 0) sum += sign * atan2(gproji_length3(cross), gproji_dot3(a, b));
         sign = alternating ? -sign : 1;
@@ -16862,15 +16828,15 @@ GPROJI_INTERNAL void gproji_measure_faces(const gproj_mesh *mesh, double *planar
             bool has_centre = gproji_circumcentre(mesh, mesh->position, f, mean, normal, centre);
             int32_t h = mesh->face_halfedge[f], k;
             for (k = 0; has_centre && k < mesh->face_degree[f]; ++k, h = mesh->next[h])
-                gproji_widen(gproji_distance3(gproji_corner_position(mesh, h), centre), &least, &most);
+                gproji_widen(gproji_distance3(gproji_corner_at(mesh, mesh->position, h), centre), &least, &most);
             m->circularity_max = gproji_fmax(m->circularity_max, (has_centre ? most - least : HUGE_VAL) / unit);
         }
         if (mesh->face_degree[f] == 4) { /* the diagonals' distance: the volume with a joining vector over their area */
             int32_t a = mesh->face_halfedge[f], b = mesh->next[a], c = mesh->next[b], d = mesh->next[c];
             double first[3], second[3], joining[3], across[3], length;
-            gproji_sub3(gproji_corner_position(mesh, c), gproji_corner_position(mesh, a), first);
-            gproji_sub3(gproji_corner_position(mesh, d), gproji_corner_position(mesh, b), second);
-            gproji_sub3(gproji_corner_position(mesh, b), gproji_corner_position(mesh, a), joining);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, c), gproji_corner_at(mesh, mesh->position, a), first);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, d), gproji_corner_at(mesh, mesh->position, b), second);
+            gproji_sub3(gproji_corner_at(mesh, mesh->position, b), gproji_corner_at(mesh, mesh->position, a), joining);
             gproji_cross3(first, second, across);
             length = gproji_length3(across);
             if (length > 0)
@@ -17086,7 +17052,8 @@ typedef struct gproji_mirrors {
 
 /* The unit vector along an edge from a half-edge's origin; 0 without length. */
 GPROJI_INTERNAL void gproji_edge_direction(const gproj_mesh *mesh, int32_t halfedge, double out[3]) {
-    gproji_sub3(gproji_corner_position(mesh, halfedge ^ 1), gproji_corner_position(mesh, halfedge), out);
+    gproji_sub3(gproji_corner_at(mesh, mesh->position, halfedge ^ 1), gproji_corner_at(mesh, mesh->position, halfedge),
+                out);
     gproji_normalise3(out, gproji_zero);
 }
 
@@ -17377,10 +17344,10 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
         return NULL;
     for (e = 0; e < mesh->edge_count; ++e) { /* a panel v_i v_j o_j o_i */
         double *out = draft.position + 12 * (size_t)e;
-        gproji_copy3(gproji_corner_position(mesh, 2 * e), out);
-        gproji_copy3(gproji_corner_position(mesh, 2 * e + 1), out + 3);
-        gproji_copy3(gproji_corner_position(offset, 2 * e + 1), out + 6);
-        gproji_copy3(gproji_corner_position(offset, 2 * e), out + 9);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, 2 * e), out);
+        gproji_copy3(gproji_corner_at(mesh, mesh->position, 2 * e + 1), out + 3);
+        gproji_copy3(gproji_corner_at(offset, offset->position, 2 * e + 1), out + 6);
+        gproji_copy3(gproji_corner_at(offset, offset->position, 2 * e), out + 9);
         draft.degree[e] = 4;
     }
     for (e = 0; e < 4 * mesh->edge_count; ++e) draft.corner[e] = e;
@@ -17405,7 +17372,7 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
         gproji_unit_normal(mesh, mesh->position, f, n);
         h = mesh->face_halfedge[f];
         for (k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            gproji_sub3(gproji_corner_position(offset, h), gproji_corner_position(mesh, h), d);
+            gproji_sub3(gproji_corner_at(offset, offset->position, h), gproji_corner_at(mesh, mesh->position, h), d);
             gproji_widen(gproji_dot3(n, d), &m.face_distance_min, &m.face_distance_max);
         }
     }
@@ -17417,12 +17384,14 @@ GPROJ_API gproj_offset_measures gproj_measure_offset(const gproj_mesh *mesh, con
     for (e = 0; e < mesh->edge_count; ++e) {
         double direction[3], c[3], along;
         gproji_edge_direction(mesh, 2 * e, direction);
-        gproji_sub3(gproji_corner_position(offset, 2 * e + 1), gproji_corner_position(offset, 2 * e), c);
+        gproji_sub3(gproji_corner_at(offset, offset->position, 2 * e + 1),
+                    gproji_corner_at(offset, offset->position, 2 * e), c);
         along = gproji_dot3(direction, c);
         m.reversed_edges += along < 0;
         gproji_add_scaled3(-along, direction, c);
         m.parallel_max = gproji_fmax(m.parallel_max, gproji_length3(c) / unit);
-        gproji_sub3(gproji_corner_position(offset, 2 * e), gproji_corner_position(mesh, 2 * e), n);
+        gproji_sub3(gproji_corner_at(offset, offset->position, 2 * e), gproji_corner_at(mesh, mesh->position, 2 * e),
+                    n);
         gproji_cross3(direction, n, n);
         gproji_normalise3(n, gproji_zero);
         m.support_planarity_max = gproji_fmax(m.support_planarity_max, fabs(gproji_dot3(n, c)) / unit);
@@ -17518,7 +17487,8 @@ typedef struct gproji_filling {
     int32_t cut_vertices;   /* then those on cuts */
 } gproji_filling;
 
-GPROJI_INTERNAL void gproji_add_quad(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c, int32_t d) {
+GPROJI_INTERNAL void gproji_ints_add4(gproji_pool *pool, gproji_ints *quad, int32_t a, int32_t b, int32_t c,
+                                      int32_t d) {
     gproji_ints_add(pool, quad, a);
     gproji_ints_add(pool, quad, b);
     gproji_ints_add(pool, quad, c);
@@ -17716,7 +17686,7 @@ GPROJI_INTERNAL void gproji_add_strip(gproji_patch *patch, int32_t i, int32_t to
     int32_t outer = patch->vertices;
     for (side = i; side < to; ++side) {
         int32_t *s = patch->side[side % patch->sides], n = patch->edges[side % patch->sides];
-        for (j = 0; j < n; ++j) gproji_add_quad(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
+        for (j = 0; j < n; ++j) gproji_ints_add4(&patch->pool, &patch->quad, outer + j, outer + j + 1, s[j + 1], s[j]);
         outer += n;
     }
     /* One edge more on the side before and on the side after; then the new sides outside. */
@@ -17765,7 +17735,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     for (i = 0; i < rows; ++i)
         for (j = 0; j < all; ++j) {
             int32_t v = i * (all + 1) + j;
-            gproji_add_quad(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
+            gproji_ints_add4(pool, &patch->quad, v, v + 1, v + all + 2, v + all + 1);
         }
     /* 3. Strips along single sides, then those over flat corners. */
     for (i = 0; i < p->sides && !p->bare; ++i)
@@ -17778,7 +17748,7 @@ GPROJI_INTERNAL bool gproji_build_patch(gproji_patch *patch, gproji_heap *heap, 
     n = (int32_t)patch->loop.count;
     for (i = 0; p->ring && i < n; ++i) {
         int32_t next = i + 1 < n ? i + 1 : 0, *loop = patch->loop.data, v = patch->vertices;
-        gproji_add_quad(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
+        gproji_ints_add4(pool, &patch->quad, v + i, v + next, loop[next], loop[i]);
     }
     for (i = 0; p->ring && i < n; ++i) patch->loop.data[i] = patch->vertices++;
     /* 5. Faces at each vertex. */
@@ -18581,7 +18551,7 @@ GPROJI_INTERNAL double gproji_distortion(gproji_untangling *u) {
 }
 
 /* Adds one quad's gradient and Hessian: 8 numbers, x and y for each vertex. */
-GPROJI_INTERNAL void gproji_add_distortion(gproji_untangling *u, int32_t quad) {
+GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
     double gradient[8] = {0}, hessian[8][8] = {{0}}, z[4], g[4], h[4][4], s = u->edge[quad];
     int32_t corner, i, j, k = 0;
     for (corner = 0; corner < 4;
@@ -18619,7 +18589,7 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
-    for (q = 0; q < quads; ++q) gproji_add_distortion(u, q);
+    for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
     outcome = gproj_cholesky_factor(u->m.cholesky, u->m.value);
     u->failed = outcome == GPROJ_FACTOR_FAILED;
     if (outcome != GPROJ_FACTORED) return false;
@@ -18730,7 +18700,7 @@ GPROJI_INTERNAL void gproji_lay_rings(gproji_filling *f) {
             double depth = 0.2 * ring / f->options.rings / sqrt(x * x + y * y);
             depth *= gproji_fmin(gproji_distance2(f->flat, i, next), gproji_distance2(f->flat, i, before));
             gproji_add_flat(f, f->flat[2 * i] - depth * y, f->flat[2 * i + 1] + depth * x);
-            gproji_add_quad(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
+            gproji_ints_add4(&f->pool, &f->quad, outer + i, outer + next, inner + next, inner + i);
         }
     f->curve_vertices = f->vertices;
     for (i = 0; i < n; ++i) f->polygon.data[i] = 2 * (f->vertices - n + i) + (f->polygon.data[i] & 1);
@@ -18883,6 +18853,10 @@ typedef struct gproji_rule {
     const gproji_acts *acts; /* NULL: it has rows, and that is all */
 } gproji_rule;
 
+/* A rule for ordinary rows that the caller asks for. */
+#define GPROJI_RULE(rule, name, kind, place, acts) \
+    static const gproji_rule rule = {name, kind, place, GPROJI_OWN_NONE, GPROJI_ORDINARY, acts}
+
 /* A constraint or wish that was added to a form: a rule, the group with the rows, and what the rule needs to know. */
 struct gproji_part {
     gproji_part *next;
@@ -18896,8 +18870,7 @@ struct gproji_part {
     double *factor;      /* more of them, one per entry; or NULL */
     int32_t curve_count; /* curves that the part owns, in internal units */
     gproj_curve **curve; /* NULL: none; an entry may be NULL */
-    void *data;          /* what the rule keeps; from the pool */
-    gproji_pool pool;    /* has all blocks */
+    void *data;          /* what the rule keeps */
 };
 
 /* A form's forces and loads: see statics. */
@@ -18940,6 +18913,7 @@ typedef struct gproji_solve {
 /* Arrays that builders and refreshes fill in and use at once. */
 typedef struct gproji_form_work {
     double *area;      /* the vectorial area of each face */
+    double *gradient;  /* 3 numbers a vertex */
     int32_t *ring;     /* the neighbours of a vertex or face */
     int32_t ring_size; /* the largest valence or degree */
     gproj_term *term;  /* a row with 3 terms for each in a ring, 3 for the centre */
@@ -18947,7 +18921,7 @@ typedef struct gproji_form_work {
 
 struct gproj_form {
     gproji_heap heap;
-    gproji_pool pool; /* has the arrays below, but those of `unknowns` */
+    gproji_pool pool; /* has the arrays below, and parts with theirs */
     gproj_error error;
     gproj_host host;
     gproj_mesh *mesh;
@@ -18974,22 +18948,13 @@ struct gproj_form {
 /* -- life -- */
 
 GPROJ_API void gproj_form_destroy(gproj_form *form) {
-    gproji_heap *own;
+    gproji_part *part;
     int32_t i;
     if (!form) return;
-    own = &form->heap;
     if (form->statics) gproji_pool_give_all(&form->statics->pool);
-    gproji_give(own, form->statics, 1, sizeof *form->statics);
-    while (form->part) {
-        gproji_part *part = form->part;
-        form->part = part->next;
+    gproji_give(&form->heap, form->statics, 1, sizeof *form->statics);
+    for (part = form->part; part; part = part->next)
         for (i = 0; i < part->curve_count; ++i) gproj_curve_destroy(part->curve[i]);
-        gproji_pool_give_all(&part->pool);
-        gproji_give(own, part, 1, sizeof *part);
-    }
-    for (i = 0; i < form->unknowns.count; ++i)
-        gproji_give(own, form->unknowns.block[i].value, (size_t)form->unknowns.block[i].count, sizeof(double));
-    gproji_give(own, form->unknowns.block, form->unknowns.capacity, sizeof *form->unknowns.block);
     gproji_pool_give_all(&form->pool);
     gproj_system_destroy(form->system);
     gproji_destroy_object(form, sizeof *form);
@@ -19057,6 +19022,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     form->before = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->before);
     form->normal = gproji_take_ints(pool, faces);
     form->work.area = (double *)gproji_pool_take(pool, faces, 3 * sizeof *form->work.area);
+    form->work.gradient = (double *)gproji_pool_take(pool, vertices, 3 * sizeof *form->work.gradient);
     form->work.ring = gproji_take_ints(pool, ring);
     form->work.term = (gproj_term *)gproji_pool_take(pool, (int64_t)ring + 1, 3 * sizeof *form->work.term);
     form->system = gproj_system_create(&form->host);
@@ -19126,13 +19092,9 @@ GPROJ_API void gproj_form_units(const gproj_form *form, double centre[3], double
 GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule *rule, int32_t count) {
     gproji_part *part;
     if (!gproji_form_ready(form) || !gproji_system_is_open(form->system)) return NULL;
-    part = (gproji_part *)gproji_take_zeroed(&form->heap, 1, sizeof *part);
-    if (part) {
-        gproji_pool_start(&part->pool, &form->heap);
-        part->element = (int32_t *)gproji_pool_take(&part->pool, count, sizeof *part->element);
-    }
-    if (!part || !part->element) {
-        gproji_give(&form->heap, part, 1, sizeof *part);
+    part = (gproji_part *)gproji_pool_take_zeroed(&form->pool, 1, sizeof *part);
+    if (part) part->element = gproji_take_ints(&form->pool, count);
+    if (form->pool.failed) {
         gproji_fail_memory(&form->error);
         return NULL;
     }
@@ -19145,9 +19107,9 @@ GPROJI_INTERNAL gproji_part *gproji_new_part(gproj_form *form, const gproji_rule
     return part;
 }
 
-/* Takes a zeroed block that lives as long as the part; NULL after an error, or if there is no part. */
+/* Takes a zeroed block for a part; NULL after an error, or if there is no part. */
 GPROJI_INTERNAL void *gproji_part_take(gproji_part *part, int64_t count, size_t size) {
-    void *block = part ? gproji_pool_take_zeroed(&part->pool, count, size) : NULL;
+    void *block = part ? gproji_pool_take_zeroed(&part->form->pool, count, size) : NULL;
     if (part && !block) gproji_fail_memory(&part->form->error);
     return block;
 }
@@ -19350,16 +19312,11 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
 
 /* -- points: fixed vertices, handles, closeness -- */
 
-static const gproji_rule gproji_fixed_rule = {"fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                              GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_fixed_boundary_rule = {"fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_fixed_corners_rule = {"fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_targets_rule = {"targets",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
-static const gproji_rule gproji_closeness_rule = {"closeness",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_fixed_rule, "fixed vertices", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_fixed_boundary_rule, "fixed boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_fixed_corners_rule, "fixed corners", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_targets_rule, "targets", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_closeness_rule, "closeness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 static const gproji_rule gproji_default_closeness_rule = {"closeness",          GPROJ_WISH,   GPROJ_PLACE_VERTEX,
                                                           GPROJI_OWN_CLOSENESS, GPROJI_GUIDE, NULL};
 
@@ -19479,7 +19436,7 @@ GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, i
         double a[6] = {0, 0, 0, 0, 0, 0}, e[3], b[3], *n = x + part->form->normal[part->element[from]];
         int32_t face = part->element[from], h = mesh->face_halfedge[face], c, round;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-            gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[h], e);
+            gproji_sub3(gproji_corner_at(mesh, x, mesh->next[h]), gproji_corner_at(mesh, x, h), e);
             gproji_add_square3(e, a);
         }
         for (round = 0; round < GPROJI_SETTLE_ROUNDS && gproji_solve_square3(a, gproji_settle_shift, n, b); ++round) {
@@ -19490,10 +19447,8 @@ GPROJI_INTERNAL void gproji_settle_normals(const gproji_part *part, double *x, i
 }
 
 static const gproji_acts gproji_normal_acts = {NULL, gproji_start_normals, gproji_settle_normals, NULL};
-static const gproji_rule gproji_planarity_rule = {"planarity",     GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_normal_acts};
-static const gproji_rule gproji_triangle_normals_rule = {"triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_normal_acts};
+GPROJI_RULE(gproji_planarity_rule, "planarity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_normal_acts);
+GPROJI_RULE(gproji_triangle_normals_rule, "triangle normals", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_normal_acts);
 
 /* Gives the face a normal as variables n with the rows n'n = 1 and n'(v_i - v_j) = 0 for every edge (paper 3.1). All
    rows of the group share two lists of terms, which name local variables: 0..2 are n in the first; n_x, v_ix, n_y,
@@ -19517,8 +19472,8 @@ GPROJI_INTERNAL void gproji_add_normal(gproji_part *part, int32_t face) {
     local = gproji_add_placed_rows(s, part->group, 0, 1, 3, unit, 3, -1, face);
     for (k = 0; k < 3 && local; ++k) local[k] = n + k;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-        gproji_sub3(form->original + 3 * (size_t)mesh->origin[mesh->next[h]],
-                    form->original + 3 * (size_t)mesh->origin[h], edge);
+        gproji_sub3(gproji_corner_at(mesh, form->original, mesh->next[h]), gproji_corner_at(mesh, form->original, h),
+                    edge);
         bent += gproji_dot3(normal, edge) * gproji_dot3(normal, edge);
     }
     if (local && bent > 4)
@@ -19543,7 +19498,7 @@ GPROJ_API int32_t gproj_add_planarity(gproj_form *form, double weight) {
     if (!gproji_form_ready(form)) return -1;
     if (form->planarity >= 0) { /* there already: a new weight for it */
         gproj_system_set_schedule(form->system, form->planarity, gproj_keep(weight));
-        return gproji_form_ready(form) ? form->planarity : -1;
+        return gproji_built(form, form->planarity);
     }
     mesh = form->mesh;
     part = gproji_open_part(form, &gproji_planarity_rule, mesh->face_count, weight);
@@ -19609,19 +19564,13 @@ GPROJI_INTERNAL void gproji_set_gliding(gproj_system *system, int32_t group, int
     gproj_system_set_row_weight(system, group, first + 2, pinned);
 }
 
-/* Vertices on curves: one of the caller's, in the mesh's units, or curves of the part. */
+/* Vertices on curves. */
 typedef struct gproji_gliding {
-    const gproj_curve *curve; /* the caller's; NULL: the part's, and: */
-    int32_t *curve_of;        /* per vertex: one of the part's curves; -1: it stays */
-    int32_t *segment;         /* per vertex: the segment it glides on; -1: to be found */
-    int32_t *pinned;          /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
+    bool in_mesh_units;        /* the curve is the caller's; false: curves are the part's */
+    const gproj_curve **curve; /* per vertex; NULL: it stays */
+    int32_t *segment;          /* per vertex: the segment it glides on; -1: to be found */
+    int32_t *pinned;           /* per vertex: to the start (0) or the end (1) of that segment; -1: it glides */
 } gproji_gliding;
-
-/* The curve of the i-th vertex; NULL: it stays. */
-GPROJI_INTERNAL const gproj_curve *gproji_curve_at(const gproji_part *part, int32_t i) {
-    const gproji_gliding *g = (gproji_gliding *)part->data;
-    return g->curve ? g->curve : g->curve_of[i] < 0 ? NULL : part->curve[g->curve_of[i]];
-}
 
 /* Keeps each vertex to the line of a segment, from which it walks to neighbouring segments. */
 GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, int32_t group,
@@ -19631,12 +19580,12 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
     bool settled = progress->unguided >= 2;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        const gproj_curve *curve = gproji_curve_at(part, i);
+        const gproj_curve *curve = gliding->curve[i];
         int32_t segment = gliding->segment[i], pinned = -1;
         double p[3], end[3];
         if (!curve) continue;
         gproji_copy3(gproj_system_values(system) + 3 * (size_t)part->element[i], p);
-        if (gliding->curve) gproji_from_internal(part->form, p, p);
+        if (gliding->in_mesh_units) gproji_from_internal(part->form, p, p);
         /* Late in a solve it keeps to one segment, and is pinned to an end that it would leave: so it cannot hop
            between two segments for ever. */
         if (segment < 0)
@@ -19649,7 +19598,7 @@ GPROJI_INTERNAL void gproji_refresh_gliding(void *user, gproj_system *system, in
         if (pinned < 0 && gproji_along(curve, segment, p, true) > 0) pinned = 1;
         if (!progress->trial) gliding->segment[i] = segment, gliding->pinned[i] = pinned;
         gproji_copy3(curve->point + 3 * ((size_t)segment + (pinned == 1)), end);
-        if (gliding->curve) gproji_to_internal(part->form, end, end);
+        if (gliding->in_mesh_units) gproji_to_internal(part->form, end, end);
         gproji_set_gliding(system, group, 3 * i, curve->tangent + 3 * (size_t)segment, end, pinned >= 0);
     }
 }
@@ -19659,7 +19608,7 @@ GPROJI_INTERNAL void gproji_start_gliding(gproji_part *part) {
     gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i;
     for (i = 0; i < part->count; ++i) {
-        if (!gproji_curve_at(part, i)) continue;
+        if (!gliding->curve[i]) continue;
         gliding->segment[i] = gliding->pinned[i] = -1;
         gproj_system_set_row_weight(part->form->system, part->group, 3 * i + 2, 0);
     }
@@ -19671,7 +19620,7 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
     gproji_gliding *gliding = (gproji_gliding *)part->data;
     int32_t i, k, count;
     for (i = 0; i < part->count && !stream->wrong; ++i) {
-        const gproj_curve *curve = gproji_curve_at(part, i);
+        const gproj_curve *curve = gliding->curve[i];
         gproj_term *t1 = gproji_row_terms(part->form->system, part->group, 3 * i, &count);
         gproji_pass_integer(stream, &gliding->segment[i], -1, curve ? curve->segment_count - 1 : -1);
         gproji_pass_integer(stream, &gliding->pinned[i], -1, 1);
@@ -19681,19 +19630,19 @@ GPROJI_INTERNAL void gproji_pass_gliding(gproji_part *part, gproji_stream *strea
 
 static const gproji_acts gproji_gliding_acts = {gproji_refresh_gliding, gproji_start_gliding, NULL,
                                                 gproji_pass_gliding};
-static const gproji_rule gproji_gliding_rule = {"gliding",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_gliding_acts};
-static const gproji_rule gproji_gliding_boundary_rule = {"gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  &gproji_gliding_acts};
+GPROJI_RULE(gproji_gliding_rule, "gliding", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_gliding_acts);
+GPROJI_RULE(gproji_gliding_boundary_rule, "gliding boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+            &gproji_gliding_acts);
 
 /* Takes what gliding keeps; NULL after an error. */
 GPROJI_INTERNAL gproji_gliding *gproji_take_gliding(gproji_part *part) {
     gproji_gliding *gliding = (gproji_gliding *)gproji_part_take(part, 1, sizeof *gliding);
     if (!gliding) return NULL;
     part->data = gliding;
+    gliding->curve = (const gproj_curve **)gproji_part_take(part, part->count, sizeof *gliding->curve);
     gliding->segment = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->segment);
     gliding->pinned = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->pinned);
-    return gliding->segment && gliding->pinned ? gliding : NULL;
+    return gproji_form_ready(part->form) ? gliding : NULL;
 }
 
 /* Adds three rows for each vertex: those that stay are pinned to their places for good, others get a line from the
@@ -19711,7 +19660,7 @@ GPROJI_INTERNAL int32_t gproji_add_gliding_rows(gproji_part *part, double weight
         for (k = 0; k < 3; ++k) gproji_add_row(form->system, part->group, 3, term, 0, part->element[i]);
         if (gproji_form_ready(form))
             gproji_set_gliding(form->system, part->group, 3 * i, axis, form->original + 3 * (size_t)part->element[i],
-                               !gproji_curve_at(part, i));
+                               !gliding->curve[i]);
     }
     return gproji_built(form, part->group);
 }
@@ -19720,9 +19669,11 @@ GPROJ_API int32_t gproj_add_gliding(gproj_form *form, const gproj_curve *curve, 
                                     double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_gliding_rule, count, vertices);
     gproji_gliding *gliding = gproji_take_gliding(part);
+    int32_t i;
     if (!gliding) return -1;
     if (!curve) return gproji_none(gproji_refuse(&form->error, "gliding: there is no curve"));
-    gliding->curve = curve;
+    gliding->in_mesh_units = true;
+    for (i = 0; i < part->count; ++i) gliding->curve[i] = curve;
     return gproji_add_gliding_rows(part, weight);
 }
 
@@ -19737,7 +19688,6 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     mesh = form->mesh;
     vertices = (size_t)mesh->vertex_count;
     part->curve = (gproj_curve **)gproji_part_take(part, mesh->loop_count, sizeof *part->curve);
-    gliding->curve_of = (int32_t *)gproji_part_take(part, part->count, sizeof *gliding->curve_of);
     if (part->curve) part->curve_count = mesh->loop_count;
     loop_of = (int32_t *)gproji_take(&form->heap, vertices, sizeof *loop_of);
     points = (double *)gproji_take(&form->heap, 3 * vertices, sizeof *points);
@@ -19749,7 +19699,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
         gproji_error_clear(&error);
         do {
             loop_of[mesh->origin[h]] = l;
-            gproji_copy3(form->original + 3 * (size_t)mesh->origin[h], points + 3 * (size_t)count++);
+            gproji_copy3(gproji_corner_at(mesh, form->original, h), points + 3 * (size_t)count++);
             h = mesh->next[h];
         } while (h != mesh->loop_halfedge[l]);
         part->curve[l] = gproj_curve_create(count, points, true, &form->host, &error);
@@ -19759,7 +19709,7 @@ GPROJ_API int32_t gproj_add_gliding_boundary(gproj_form *form, double weight) {
     /* 2. Vertices glide along their loops; corners stay, and vertices on a loop without extent. */
     for (i = 0; i < part->count && gproji_form_ready(form); ++i) {
         l = loop_of[part->element[i]];
-        gliding->curve_of[i] = gproj_form_is_corner(form, part->element[i]) || !part->curve[l] ? -1 : l;
+        gliding->curve[i] = gproj_form_is_corner(form, part->element[i]) ? NULL : part->curve[l];
     }
     gproji_give(&form->heap, loop_of, vertices, sizeof *loop_of);
     gproji_give(&form->heap, points, 3 * vertices, sizeof *points);
@@ -19786,8 +19736,7 @@ GPROJI_INTERNAL void gproji_refresh_reference(void *user, gproj_system *system, 
 }
 
 static const gproji_acts gproji_reference_acts = {gproji_refresh_reference, NULL, NULL, NULL};
-static const gproji_rule gproji_reference_rule = {"reference",     GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_reference_acts};
+GPROJI_RULE(gproji_reference_rule, "reference", GPROJ_WISH, GPROJ_PLACE_VERTEX, &gproji_reference_acts);
 
 GPROJ_API int32_t gproj_add_reference(gproj_form *form, const gproj_surface *surface, double weight) {
     gproji_part *part = gproji_new_list_part(form, &gproji_reference_rule, 0, NULL);
@@ -19816,16 +19765,16 @@ typedef struct gproji_difference {
     const int32_t *neighbour;
 } gproji_difference;
 
-/* Adds a difference's rows, one for each coordinate. In a tangent plane there are two, and the part `tangential` notes
-   the element, so that a refresh can fill in their coefficients. */
-GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gproji_part *tangential,
-                                           const gproji_difference *d) {
-    int32_t points = d->count + 1, last, k, i, *local;
+/* Adds a difference's rows, one for each coordinate. In a tangent plane, where a refresh fills in their coefficients,
+   there are two, and the part notes the element. */
+GPROJI_INTERNAL void gproji_add_difference(gproji_part *part, const gproji_difference *d) {
+    gproj_form *form = part->form;
+    int32_t points = d->count + 1, group = part->group, last, k, i, *local;
     gproj_term *term = form->work.term;
-    if (tangential) {
+    if (part->rule->acts) {
         for (i = 0; i < points; ++i) gproji_set_point(&term[3 * i], i == 0 ? d->centre : d->neighbour[i - 1]);
         for (k = 0; k < 2; ++k) gproji_add_row(form->system, group, 3 * points, term, 0, d->element);
-        tangential->element[tangential->count++] = d->element;
+        part->element[part->count++] = d->element;
         return;
     }
     /* Successive rows share their terms if they have equally many points. */
@@ -19840,9 +19789,8 @@ GPROJI_INTERNAL void gproji_add_difference(gproj_form *form, int32_t group, gpro
 
 /* Adds the differences between a point and its `count` cyclic neighbours form->work.ring: opposite pairs if there are
    four, else the mean of all (paper 3.2). */
-GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group, gproji_part *tangential,
-                                                 int32_t centre, int32_t count, int32_t element) {
-    const int32_t *ring = form->work.ring;
+GPROJI_INTERNAL void gproji_add_ring_differences(gproji_part *part, int32_t centre, int32_t count, int32_t element) {
+    const int32_t *ring = part->form->work.ring;
     gproji_difference d;
     int32_t pairs[4];
     d.element = element, d.centre = centre, d.count = count, d.neighbour = ring;
@@ -19850,10 +19798,10 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproj_form *form, int32_t group
         pairs[0] = ring[0], pairs[1] = ring[2], pairs[2] = ring[1], pairs[3] = ring[3];
         d.count = 2;
         d.neighbour = pairs;
-        gproji_add_difference(form, group, tangential, &d);
+        gproji_add_difference(part, &d);
         d.neighbour = pairs + 2;
     }
-    gproji_add_difference(form, group, tangential, &d);
+    gproji_add_difference(part, &d);
 }
 
 /* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
@@ -19866,24 +19814,24 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
     return count;
 }
 
-static const gproji_rule gproji_fairness_rule = {"fairness",      GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
-static const gproji_rule gproji_boundary_fairness_rule = {"boundary fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_fairness_rule, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
+GPROJI_RULE(gproji_boundary_fairness_rule, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 
 /* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
 GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    int32_t group = gproji_new_group(form, rule, weight), v, h, pair[2];
+    gproji_part *part = gproji_open_part(form, rule, 0, weight);
     bool inside = rule != &gproji_boundary_fairness_rule;
     const gproj_mesh *mesh;
     gproji_difference d;
     size_t vertices;
-    if (group < 0) return -1;
+    int32_t v, h, pair[2];
+    if (!part) return -1;
     mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
-    if (inside) gproji_expect_group(form, group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
+    if (inside)
+        gproji_expect_group(form, part->group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
     for (v = 0; inside && v < mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, group, NULL, 3 * v, count, v);
+        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
     }
     for (v = 0; v < mesh->vertex_count; ++v) {
         if (!gproji_select_gliding(form, v)) continue;
@@ -19891,9 +19839,9 @@ GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule 
         pair[0] = 3 * mesh->origin[mesh->prev[h]];
         pair[1] = 3 * mesh->origin[mesh->twin[h]];
         d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
-        gproji_add_difference(form, group, NULL, &d);
+        gproji_add_difference(part, &d);
     }
-    return gproji_built(form, group);
+    return gproji_built(form, part->group);
 }
 
 GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
@@ -19934,8 +19882,7 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_difference_acts = {gproji_refresh_differences, NULL, NULL, NULL};
-static const gproji_rule gproji_tangential_rule = {"tangential fairness", GPROJ_WISH,      GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE,       GPROJI_ORDINARY, &gproji_difference_acts};
+GPROJI_RULE(gproji_tangential_rule, "tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, &gproji_difference_acts);
 
 GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
     gproji_part *part;
@@ -19945,7 +19892,7 @@ GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight)
     if (!part) return -1;
     for (v = 0; v < form->mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(form, part->group, part, 3 * v, count, v);
+        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
     }
     return gproji_built(form, part->group);
 }
@@ -19968,8 +19915,7 @@ GPROJI_INTERNAL bool gproji_add_missing_normals(gproj_form *form, const gproji_r
     return gproji_form_ready(form);
 }
 
-static const gproji_rule gproji_gauss_rule = {"Gauss image fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                              GPROJI_OWN_NONE,        GPROJI_ORDINARY, &gproji_difference_acts};
+GPROJI_RULE(gproji_gauss_rule, "Gauss image fairness", GPROJ_WISH, GPROJ_PLACE_FACE, &gproji_difference_acts);
 
 GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -19986,7 +19932,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             form->work.ring[k] = neighbour < 0 ? -1 : form->normal[neighbour];
             count += neighbour >= 0;
         }
-        if (count == degree) gproji_add_ring_differences(form, part->group, part, form->normal[f], degree, f);
+        if (count == degree) gproji_add_ring_differences(part, form->normal[f], degree, f);
         /* A quad at the boundary still has a difference if it has two opposite neighbours. */
         for (k = 0; count < degree && degree == 4 && k < 2; ++k) {
             gproji_difference d;
@@ -19995,7 +19941,7 @@ GPROJ_API int32_t gproj_add_gauss_fairness(gproj_form *form, double weight) {
             pair[1] = form->work.ring[k + 2];
             if (pair[0] < 0 || pair[1] < 0) continue;
             d.element = f, d.centre = form->normal[f], d.count = 2, d.neighbour = pair;
-            gproji_add_difference(form, part->group, part, &d);
+            gproji_add_difference(part, &d);
         }
     }
     return gproji_built(form, part->group);
@@ -20063,8 +20009,7 @@ GPROJI_INTERNAL void gproji_set_length_terms(const gproj_mesh *mesh, int32_t edg
     gproji_set_products(term, 3, square, end, scale);
 }
 
-static const gproji_rule gproji_lengths_rule = {"lengths",       GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_lengths_rule, "lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, NULL);
 
 /* |v_i - v_j|^2 / (2 l) - l / 2 = 0: close to a solution, the change in length. */
 GPROJ_API int32_t gproj_add_lengths(gproj_form *form, int32_t count, const int32_t *edges, const double *lengths,
@@ -20101,8 +20046,7 @@ GPROJI_INTERNAL void gproji_start_mean(gproji_part *part) {
 }
 
 static const gproji_acts gproji_equal_lengths_acts = {NULL, gproji_start_mean, NULL, NULL};
-static const gproji_rule gproji_equal_lengths_rule = {"equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equal_lengths_acts};
+GPROJI_RULE(gproji_equal_lengths_rule, "equal lengths", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, &gproji_equal_lengths_acts);
 
 /* |v_i - v_j|^2 / 2 - l^2 / 2 = 0 with the unknown l. */
 GPROJ_API int32_t gproj_add_equal_lengths(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
@@ -20157,8 +20101,7 @@ GPROJI_INTERNAL void gproji_start_midsphere(gproji_part *part) {
 }
 
 static const gproji_acts gproji_midsphere_acts = {NULL, gproji_start_midsphere, NULL, NULL};
-static const gproji_rule gproji_midsphere_rule = {"midsphere",     GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_midsphere_acts};
+GPROJI_RULE(gproji_midsphere_rule, "midsphere", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, &gproji_midsphere_acts);
 
 /* (m'm - 2 c'm + s) / (2 R) = 0 for midpoints m = (v_i + v_j) / 2: products of v_i, v_j, c, and a term in s. */
 GPROJ_API int32_t gproj_add_midsphere(gproj_form *form, int32_t count, const int32_t *edges, double weight) {
@@ -20253,14 +20196,11 @@ GPROJI_INTERNAL void gproji_start_planes(gproji_part *part) {
 }
 
 static const gproji_acts gproji_plane_acts = {NULL, gproji_start_planes, NULL, NULL};
-static const gproji_rule gproji_coplanar_rule = {"coplanar",      GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                 GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_collinear_rule = {"collinear",     GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                  GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_planar_boundary_rule = {"planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                        GPROJI_OWN_NONE,   GPROJI_ORDINARY,  &gproji_plane_acts};
-static const gproji_rule gproji_straight_boundary_rule = {"straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                          GPROJI_OWN_NONE,     GPROJI_ORDINARY,  &gproji_plane_acts};
+GPROJI_RULE(gproji_coplanar_rule, "coplanar", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_collinear_rule, "collinear", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_planar_boundary_rule, "planar boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_plane_acts);
+GPROJI_RULE(gproji_straight_boundary_rule, "straight boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
+            &gproji_plane_acts);
 
 /* Makes a part one with planes (1) or lines (2), with a group without rows. */
 GPROJI_INTERNAL bool gproji_begin_planes(gproji_part *part, int32_t planes, double weight) {
@@ -20337,8 +20277,7 @@ GPROJ_API int32_t gproj_add_straight_boundary(gproj_form *form, double weight) {
 
 /* -- directions of edges, lifting -- */
 
-static const gproji_rule gproji_orthogonal_edges_rule = {"orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE,
-                                                         GPROJI_OWN_NONE,    GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_orthogonal_edges_rule, "orthogonal edges", GPROJ_CONSTRAINT, GPROJ_PLACE_EDGE, NULL);
 
 GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double normal[3], int32_t count,
                                              const int32_t *edges, double weight) {
@@ -20365,8 +20304,7 @@ GPROJ_API int32_t gproj_add_orthogonal_edges(gproj_form *form, const double norm
     return gproji_built(form, group);
 }
 
-static const gproji_rule gproji_orthogonal_boundary_rule = {"orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                            GPROJI_OWN_NONE,       GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_orthogonal_boundary_rule, "orthogonal boundary", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
 
 /* (v_b - v)'(v_1 - v_2) / 2 = 0: the edge from v to v_b inside is orthogonal to the boundary, on which v is between v_2
    and v_1: products of v, v_2, v_b, v_1. */
@@ -20385,8 +20323,7 @@ GPROJ_API int32_t gproj_add_orthogonal_boundary(gproj_form *form, double weight)
     return gproji_built(form, group);
 }
 
-static const gproji_rule gproji_lifting_rule = {"lifting",       GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                GPROJI_OWN_NONE, GPROJI_ORDINARY,  NULL};
+GPROJI_RULE(gproji_lifting_rule, "lifting", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, NULL);
 
 GPROJ_API int32_t gproj_add_lifting(gproj_form *form, double weight) {
     int32_t group = gproji_new_group(form, &gproji_lifting_rule, weight), i;
@@ -20420,7 +20357,7 @@ GPROJI_INTERNAL void gproji_start_axis_points(gproji_part *part) {
         int32_t face = part->element[i], h = mesh->face_halfedge[face];
         double mean[3] = {0, 0, 0}, normal[3];
         for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h])
-            gproji_add_scaled3(1.0 / mesh->face_degree[face], x + 3 * (size_t)mesh->origin[h], mean);
+            gproji_add_scaled3(1.0 / mesh->face_degree[face], gproji_corner_at(mesh, x, h), mean);
         gproji_face_normal(part->form, face, normal);
         gproji_circumcentre(mesh, x, face, mean, normal, x + part->form->axis[face]);
     }
@@ -20437,7 +20374,7 @@ GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *
         double e[3], m[3], change[3];
         int32_t face = part->element[from], h = mesh->face_halfedge[face], c, k;
         for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
-            const double *v = x + 3 * (size_t)mesh->origin[h], *w = x + 3 * (size_t)mesh->origin[mesh->next[h]];
+            const double *v = gproji_corner_at(mesh, x, h), *w = gproji_corner_at(mesh, x, mesh->next[h]);
             gproji_sub3(w, v, e);
             for (k = 0; k < 3; ++k) m[k] = (v[k] + w[k]) / 2 - p[k];
             gproji_add_square3(e, a);
@@ -20448,8 +20385,7 @@ GPROJI_INTERNAL void gproji_settle_axis_points(const gproji_part *part, double *
 }
 
 static const gproji_acts gproji_circularity_acts = {NULL, gproji_start_axis_points, gproji_settle_axis_points, NULL};
-static const gproji_rule gproji_circularity_rule = {"circularity",   GPROJ_CONSTRAINT, GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_circularity_acts};
+GPROJI_RULE(gproji_circularity_rule, "circularity", GPROJ_CONSTRAINT, GPROJ_PLACE_FACE, &gproji_circularity_acts);
 
 /* |v_j|^2/2 - |v_i|^2/2 - c'(v_j - v_i) = 0 for a face's edges: the unknown c is equally far from all vertices, so on
    the axis of their circle. */
@@ -20496,7 +20432,7 @@ GPROJI_INTERNAL void gproji_refresh_cones(void *user, gproj_system *system, int3
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         if (h < 0) continue;
         a = x + form->cone[mesh->origin[h]];
-        gproji_sub3(x + 3 * (size_t)mesh->origin[h ^ 1], x + 3 * (size_t)mesh->origin[h], e);
+        gproji_sub3(gproji_corner_at(mesh, x, h ^ 1), gproji_corner_at(mesh, x, h), e);
         gproji_copy3(x + form->normal[mesh->face[h]], m);
         gproji_add_scaled3(1, x + form->normal[mesh->face[h ^ 1]], m);
         gproji_cross3(e, m, slope[0]);
@@ -20521,8 +20457,7 @@ GPROJI_INTERNAL void gproji_settle_cones(const gproji_part *part, double *x, int
 }
 
 static const gproji_acts gproji_conicality_acts = {gproji_refresh_cones, NULL, gproji_settle_cones, NULL};
-static const gproji_rule gproji_conicality_rule = {"conicality",    GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                   GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_conicality_acts};
+GPROJI_RULE(gproji_conicality_rule, "conicality", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_conicality_acts);
 
 /* Around a vertex with four or more faces all normals have the same angle with an axis a, a'a = 1. Equivalent, for each
    edge e between faces f and g: a is in the plane of e and n_f + n_g. */
@@ -20567,8 +20502,7 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     return gproji_built(form, part->group);
 }
 
-static const gproji_rule gproji_parallelograms_rule = {"parallelograms", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_parallelograms_rule, "parallelograms", GPROJ_WISH, GPROJ_PLACE_FACE, NULL);
 
 GPROJ_API int32_t gproj_add_parallelograms(gproj_form *form, double weight) {
     int32_t group = gproji_new_group(form, &gproji_parallelograms_rule, weight), f, k, c;
@@ -20593,7 +20527,7 @@ GPROJI_INTERNAL void gproji_area_slope(const gproj_form *form, int32_t h, const 
     const double *x = gproj_system_values(form->system);
     double across[3];
     int32_t k;
-    gproji_sub3(x + 3 * (size_t)mesh->origin[mesh->next[h]], x + 3 * (size_t)mesh->origin[mesh->prev[h]], across);
+    gproji_sub3(gproji_corner_at(mesh, x, mesh->next[h]), gproji_corner_at(mesh, x, mesh->prev[h]), across);
     gproji_cross3(across, normal, out);
     for (k = 0; k < 3; ++k) out[k] /= 2;
 }
@@ -20608,7 +20542,7 @@ GPROJI_INTERNAL double gproji_linearise_area(const gproj_form *form, int32_t fac
     constant = scale * gproji_length3(normal);
     gproji_normalise3(normal, gproji_zero);
     for (k = 0; k < mesh->face_degree[face]; ++k, h = mesh->next[h]) {
-        const double *v = x + 3 * (size_t)mesh->origin[h];
+        const double *v = gproji_corner_at(mesh, x, h);
         gproji_area_slope(form, h, normal, slope);
         for (c = 0; c < 3; ++c) term[3 * k + c].a = scale * slope[c];
         constant -= scale * gproji_dot3(slope, v);
@@ -20638,8 +20572,7 @@ GPROJI_INTERNAL void gproji_refresh_areas(void *user, gproj_system *system, int3
 }
 
 static const gproji_acts gproji_equal_areas_acts = {gproji_refresh_areas, gproji_start_mean, NULL, NULL};
-static const gproji_rule gproji_equal_areas_rule = {"equal areas",   GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_equal_areas_acts};
+GPROJI_RULE(gproji_equal_areas_rule, "equal areas", GPROJ_WISH, GPROJ_PLACE_FACE, &gproji_equal_areas_acts);
 
 GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
     gproji_part *part = gproji_new_part(form, &gproji_equal_areas_rule, 0);
@@ -20656,22 +20589,6 @@ GPROJ_API int32_t gproj_add_equal_areas(gproj_form *form, double weight) {
         gproji_add_row(form->system, part->group, count + 1, term, 0, f);
     }
     return gproji_built(form, part->group);
-}
-
-/* A sum over the whole mesh, linearised in all vertices. */
-typedef struct gproji_total {
-    double *gradient; /* 3 numbers a vertex of the mesh */
-    double unit;      /* the sum's change when the mesh grows by a mean edge length */
-} gproji_total;
-
-/* Adds a part for such a sum; NULL after an error. */
-GPROJI_INTERNAL gproji_part *gproji_new_total(gproj_form *form, const gproji_rule *rule) {
-    gproji_part *part = gproji_new_part(form, rule, 0);
-    gproji_total *total = (gproji_total *)gproji_part_take(part, 1, sizeof *total);
-    if (!total) return NULL;
-    part->data = total;
-    total->gradient = (double *)gproji_part_take(part, 3 * (int64_t)form->mesh->vertex_count, sizeof *total->gradient);
-    return total->gradient ? part : NULL;
 }
 
 /* Adds a group with `rows` rows for the whole mesh: terms for all coordinates in order, coefficients from the
@@ -20692,8 +20609,8 @@ GPROJI_INTERNAL int32_t gproji_add_global_rows(gproji_part *part, double weight,
 GPROJI_INTERNAL void gproji_refresh_volume(void *user, gproj_system *system, int32_t group,
                                            const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    double *gradient = ((const gproji_total *)part->data)->gradient;
     gproj_form *form = part->form;
+    double *gradient = form->work.gradient;
     const double *x = gproj_system_values(system);
     double height = form->centre[2] * form->scale, area, constant, scale;
     size_t count = 3 * (size_t)form->mesh->vertex_count, k;
@@ -20711,7 +20628,7 @@ static const gproji_rule gproji_volume_rule = {"volume",        GPROJ_CONSTRAINT
                                                GPROJI_OWN_NONE, GPROJI_DENSE,     &gproji_volume_acts};
 
 GPROJ_API int32_t gproj_add_volume(gproj_form *form, double volume, double weight) {
-    gproji_part *part = gproji_new_total(form, &gproji_volume_rule);
+    gproji_part *part = gproji_new_part(form, &gproji_volume_rule, 0);
     if (!part) return -1;
     if (!gproji_is_finite(volume))
         return gproji_none(
@@ -20751,8 +20668,7 @@ GPROJI_INTERNAL bool gproji_has_bound(const double bound[2], int32_t side) {
     return side == 0 ? bound[0] > 0 : gproji_is_finite(bound[1]);
 }
 
-static const gproji_rule gproji_length_bounds_rule = {"length bounds", GPROJ_BOUND,     GPROJ_PLACE_EDGE,
-                                                      GPROJI_OWN_NONE, GPROJI_ORDINARY, NULL};
+GPROJI_RULE(gproji_length_bounds_rule, "length bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, NULL);
 
 /* (|e|^2 - min^2) / (2 min) >= 0 and (max^2 - |e|^2) / (2 max) >= 0. */
 GPROJ_API int32_t gproj_add_length_bounds(gproj_form *form, int32_t count, const int32_t *edges, double min, double max,
@@ -20796,8 +20712,7 @@ GPROJI_INTERNAL void gproji_refresh_area_bounds(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_area_bounds_acts = {gproji_refresh_area_bounds, NULL, NULL, NULL};
-static const gproji_rule gproji_area_bounds_rule = {"area bounds",   GPROJ_BOUND,     GPROJ_PLACE_FACE,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_area_bounds_acts};
+GPROJI_RULE(gproji_area_bounds_rule, "area bounds", GPROJ_BOUND, GPROJ_PLACE_FACE, &gproji_area_bounds_acts);
 
 GPROJ_API int32_t gproj_add_area_bounds(gproj_form *form, int32_t count, const int32_t *faces, double min, double max,
                                         double weight) {
@@ -20820,13 +20735,13 @@ enum {
     GPROJI_PRICE = 2
 };
 
-/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient. `size`:
-   by how much C changes when the mesh grows by a mean edge length. */
+/* The cost C = sum price[0] |e| + sum price[1] |a| over edges and faces at the system's x, and the gradient in
+   form->work. `size`: see gproji_refresh_cost. */
 GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, double *size) {
     const gproj_mesh *mesh = form->mesh;
     const double *price = part->given + GPROJI_PRICE;
     const double *x = gproj_system_values(form->system);
-    double length, area, d[3], slope[3], *gradient = ((gproji_total *)part->data)->gradient;
+    double length, area, d[3], slope[3], *gradient = form->work.gradient;
     gproji_sum sum = {0, 0}, areas = {0, 0};
     int32_t e, f, k;
     memset(gradient, 0, 3 * (size_t)mesh->vertex_count * sizeof *gradient);
@@ -20857,27 +20772,27 @@ GPROJI_INTERNAL double gproji_cost(gproj_form *form, const gproji_part *part, do
     return length + price[1] * area;
 }
 
-/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit. A prescribed cost has the first one only. */
+/* The rows (C(v) + grad C'(v' - v) - min) / unit and (max - ...) / unit, the unit in part->data: by how much C changes
+   when the mesh grows by a mean edge length. A prescribed cost has the first one only. */
 GPROJI_INTERNAL void gproji_refresh_cost(void *user, gproj_system *system, int32_t group,
                                          const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
-    const gproji_total *total = (const gproji_total *)part->data;
     const double *x = gproj_system_values(system);
     gproji_sum ahead = {0, 0};
-    double scale = 1 / total->unit;
+    double scale = 1 / *(const double *)part->data, *gradient = part->form->work.gradient;
     int32_t side, t, count = 3 * part->form->mesh->vertex_count, row = 0;
     (void)progress;
     /* C - grad C'v cancels: it is summed up with compensation. */
     ahead.high = gproji_cost(part->form, part, NULL);
     for (t = 0; t < count; ++t) {
-        gproji_sum_add_product(&ahead, -total->gradient[t], x[t]);
-        total->gradient[t] *= scale;
+        gproji_sum_add_product(&ahead, -gradient[t], x[t]);
+        gradient[t] *= scale;
     }
     for (side = 0; side < 2; ++side) {
         double constant = scale * (gproji_sum_value(&ahead) - part->given[side]);
-        for (t = 0; side == 1 && t < count; ++t) total->gradient[t] = -total->gradient[t];
+        for (t = 0; side == 1 && t < count; ++t) gradient[t] = -gradient[t];
         if (!gproji_has_bound(part->given, side)) continue;
-        gproj_system_set_row(system, group, row++, total->gradient, side == 0 ? constant : -constant);
+        gproj_system_set_row(system, group, row++, gradient, side == 0 ? constant : -constant);
     }
 }
 
@@ -20895,11 +20810,10 @@ static const gproji_rule gproji_cost_bounds_rule = {"cost bounds",   GPROJ_BOUND
    which must be > 0 and finite; `max` is infinite then. */
 GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *rule, double length_price,
                                          double area_price, double min, double max, double weight) {
-    gproji_part *part = gproji_new_total(form, rule);
-    double prices = length_price + area_price;
-    gproji_total *total;
+    gproji_part *part = gproji_new_part(form, rule, 0);
+    double prices = length_price + area_price, *unit = (double *)gproji_part_take(part, 1, sizeof *unit);
     int32_t rows;
-    if (!part) return -1;
+    if (!unit) return -1;
     if (rule->kind == GPROJ_CONSTRAINT && (!(min > 0) || !gproji_is_finite(min)))
         return gproji_none(gproji_refuse(&form->error, "%s: %g is not > 0 and finite", rule->name, min));
     if (!(length_price >= 0) || !(area_price >= 0) || !(prices > 0) || !gproji_is_finite(prices))
@@ -20908,9 +20822,9 @@ GPROJI_INTERNAL int32_t gproji_add_total(gproj_form *form, const gproji_rule *ru
     if (!gproji_take_bounds(form, rule->name, min, max, 1, part->given)) return -1;
     part->given[GPROJI_PRICE] = length_price / form->scale;
     part->given[GPROJI_PRICE + 1] = area_price / form->scale / form->scale;
-    total = (gproji_total *)part->data;
-    gproji_cost(form, part, &total->unit);
-    total->unit = gproji_fmax(total->unit, 1e-12);
+    gproji_cost(form, part, unit);
+    *unit = gproji_fmax(*unit, 1e-12);
+    part->data = unit;
     rows = gproji_has_bound(part->given, 0) + gproji_has_bound(part->given, 1);
     return gproji_add_global_rows(part, weight, rows);
 }
@@ -20997,8 +20911,7 @@ GPROJI_INTERNAL void gproji_pass_unknowns(gproji_part *part, gproji_stream *stre
 }
 
 static const gproji_acts gproji_rows_acts = {NULL, gproji_start_unknowns, NULL, gproji_pass_unknowns};
-static const gproji_rule gproji_rows_rule = {"rows",          GPROJ_CONSTRAINT, GPROJ_PLACE_NONE,
-                                             GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_rows_acts};
+GPROJI_RULE(gproji_rows_rule, "rows", GPROJ_CONSTRAINT, GPROJ_PLACE_NONE, &gproji_rows_acts);
 
 /* A rule with the caller's name. */
 typedef struct gproji_own_rule {
@@ -21043,27 +20956,22 @@ GPROJI_INTERNAL gproji_part *gproji_callers_part(gproj_form *form, int32_t group
 GPROJ_API int32_t gproj_form_add_unknowns(gproj_form *form, int32_t group, gproj_unit unit, int32_t count,
                                           const double *values, gproj_start start, void *user) {
     gproji_part *part = gproji_callers_part(form, group);
-    size_t needed;
     gproji_unknowns *u;
-    int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1;
+    double *start_values;
+    int32_t size = unit == GPROJ_UNIT_POINT ? 3 : 1, first;
     if (!part) return -1;
     if (unit < GPROJ_UNIT_NUMBER || unit > GPROJ_UNIT_POINT || count < 1 || count % size != 0 || !values)
         return gproji_none(gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                                        "%s: %d unknowns: there must be 1 or more, of points 3 each, and start values",
                                        part->rule->name, count));
-    needed = (size_t)form->unknowns.count + 1;
-    form->unknowns.block =
-        (gproji_unknowns *)gproji_grow(&form->heap, form->unknowns.block, &form->unknowns.capacity, needed, sizeof *u);
-    if (form->unknowns.capacity < needed) return gproji_none(gproji_fail_memory(&form->error));
+    form->unknowns.block = (gproji_unknowns *)gproji_pool_grow(
+        &form->pool, form->unknowns.block, &form->unknowns.capacity, (size_t)form->unknowns.count + 1, sizeof *u);
+    start_values = (double *)gproji_pool_copy(&form->pool, values, count, sizeof *values);
+    if (form->pool.failed) return gproji_none(gproji_fail_memory(&form->error));
+    first = gproj_system_add_variables(form->system, count, size, NULL);
+    if (first < 0) return -1;
     u = &form->unknowns.block[form->unknowns.count];
-    u->value = (double *)gproji_take(&form->heap, (size_t)count, sizeof *u->value);
-    if (!u->value) gproji_fail_memory(&form->error);
-    u->first = u->value ? gproj_system_add_variables(form->system, count, size, NULL) : -1;
-    if (u->first < 0) {
-        gproji_give(&form->heap, u->value, (size_t)count, sizeof *u->value);
-        return -1;
-    }
-    memcpy(u->value, values, (size_t)count * sizeof *values);
+    u->first = first, u->value = start_values;
     u->part = part, u->count = count, u->unit = unit, u->start = start, u->user = user;
     gproji_start_block(form, form->unknowns.count++);
     return gproji_built(form, u->first);
@@ -22768,7 +22676,7 @@ GPROJI_INTERNAL int32_t gproji_find_held(const gproj_form *form, int32_t *kept, 
     for (part = form->part; part; part = part->next) {
         if (part->rule != &gproji_gliding_boundary_rule || !gproji_is_on(form, part->group)) continue;
         for (i = 0; i < part->count; ++i) {
-            bool corner = !gproji_curve_at(part, i);
+            bool corner = !((const gproji_gliding *)part->data)->curve[i];
             if (!(gproji_group_at(form->system, part->group)->row[3 * i].weight > 0)) continue;
             v = part->element[i];
             if (corner) gproji_copy3(form->original + 3 * (size_t)v, value + 3 * (size_t)v);
@@ -23119,10 +23027,11 @@ GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, i
     return fabs(gproji_dot3(mixed, normal)) > gproji_fmax(2 * bend, noticeable * gproji_length3(normal));
 }
 
-/* Says that the edges follow asymptotic directions, if they do nearly everywhere. Returns whether they do. */
-GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
+/* Says that edges of faces that are to be flat follow asymptotic directions, if they do nearly everywhere. */
+GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     int32_t inner = 0, twisted = 0, v;
+    if (!gproji_is_on(form, form->planarity)) return;
     for (v = 0; v < mesh->vertex_count; ++v) {
         int32_t start = mesh->vertex_halfedge[v], h = start;
         bool quads = true;
@@ -23134,21 +23043,21 @@ GPROJI_INTERNAL bool gproji_tell_asymptotic(const gproj_form *form, gproj_result
         ++inner;
         twisted += quads && gproj_mesh_valence(mesh, v) == 4 && gproji_twists_at(mesh, form->original, v);
     }
-    if (!(twisted > 0.9 * inner)) return false;
-    gproji_tell(result, "; the edges follow asymptotic directions of a saddle-shaped surface, near which flat faces "
-                        "collapse: take the mesh along its diagonals (gproj_mesh_diagonals, --diagonals)");
-    return true;
+    if (twisted > 0.9 * inner)
+        gproji_tell(result, "; the edges follow asymptotic directions of a saddle-shaped surface, where flat faces "
+                            "move far or collapse: take the mesh along its diagonals (gproj_mesh_diagonals, "
+                            "--diagonals)");
 }
 
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
-   vertices are held; else a plane that spreads and asymptotic directions, or angles, if no face has been let go.
+   vertices are held; else a plane that spreads, or angles, if no face has been let go.
    Returns true in the first case alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     double *value = gproji_spare(form->system, 1), worst = 0;
     int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
     int32_t r, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, kept, value);
-    bool planar = gproji_is_on(form, form->planarity), whole = planar, known;
+    bool planar = gproji_is_on(form, form->planarity), whole = planar;
     const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
     for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
         int32_t count, f = g->row[r].element;
@@ -23175,8 +23084,7 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
         spread.form = form, spread.kept = kept, spread.value = value;
         spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
         memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
-        known = gproji_tell_planes(&spread, result);
-        if (!gproji_tell_asymptotic(form, result) && !known) gproji_tell_angles(&spread, result);
+        if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
     }
     return bent > 0;
 }
@@ -23373,6 +23281,7 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     length = strlen(result->message);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
     known = result->message[length] != 0;
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_asymptotic(form, result);
     gproji_tell(result, "; but the mesh is spoiled: ");
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
         int32_t count = d.count[kind], at = d.first[kind];
@@ -23795,6 +23704,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
         if (loop->hopeful && !result->message[length]) /* nothing is known against it */
             gproji_tell(result, gproji_more_iterations);
+        if (!(result->residual <= result->tolerance)) gproji_tell_asymptotic(form, result);
         doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
         if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }

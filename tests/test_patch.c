@@ -84,7 +84,7 @@ static bool is_disk(const gproji_patch *patch, const gproji_pattern *p, const in
     for (i = 0; i < n; ++i) {
         int32_t faces = 0;
         for (j = 0; j < n; ++j) faces += edge[i][j];
-        if (faces != patch->uses.data[i]) return false;
+        if (faces != patch->uses[i]) return false;
     }
     return true;
 }
@@ -95,7 +95,7 @@ static bool has_its_valences(const gproji_patch *patch, const gproji_pattern *p)
     bool outer[MOST_VERTICES] = {false};
     for (i = 0; i < (int32_t)patch->loop.count; ++i) outer[patch->loop.data[i]] = true;
     for (i = 0; i < patch->vertices; ++i)
-        if (!outer[i]) ++found[gproji_min(patch->uses.data[i], 8)];
+        if (!outer[i]) ++found[gproji_min(patch->uses[i], 8)];
     if (p->edges == 0) {
         ++wanted[p->sides];
     } else {
@@ -114,7 +114,7 @@ static bool is_built(gproji_heap *heap, gproji_pattern *p, const int32_t *length
     p->ring = ring;
     right = gproji_build_patch(&patch, heap, p, length);
     if (has_all_strips(p)) right = right && is_disk(&patch, p, length) && (ring || has_its_valences(&patch, p));
-    gproji_patch_give(&patch);
+    gproji_pool_give_all(&patch.pool);
     return right;
 }
 
