@@ -402,7 +402,7 @@ typedef enum gproj_place {
 } gproj_place;
 
 enum {
-    GPROJ_MESSAGE_SIZE = 512
+    GPROJ_MESSAGE_SIZE = 768
 };
 
 typedef struct gproj_error {
@@ -23030,6 +23030,9 @@ GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, i
 /* Says that edges of faces that are to be flat follow asymptotic directions, if they do nearly everywhere. */
 GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
+    const char *clause =
+        "; edges follow asymptotic directions, where flat faces move far or collapse: take the mesh along "
+        "its diagonals (gproj_mesh_diagonals, --diagonals)";
     int32_t inner = 0, twisted = 0, v;
     if (!gproji_is_on(form, form->planarity)) return;
     for (v = 0; v < mesh->vertex_count; ++v) {
@@ -23043,10 +23046,8 @@ GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result
         ++inner;
         twisted += quads && gproj_mesh_valence(mesh, v) == 4 && gproji_twists_at(mesh, form->original, v);
     }
-    if (twisted > 0.9 * inner)
-        gproji_tell(result, "; the edges follow asymptotic directions of a saddle-shaped surface, where flat faces "
-                            "move far or collapse: take the mesh along its diagonals (gproj_mesh_diagonals, "
-                            "--diagonals)");
+    if (twisted > 0.9 * inner && strlen(result->message) + strlen(clause) < sizeof result->message)
+        gproji_tell(result, "%s", clause);
 }
 
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
@@ -23281,7 +23282,6 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     length = strlen(result->message);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
     known = result->message[length] != 0;
-    if (result->outcome == GPROJ_CONVERGED) gproji_tell_asymptotic(form, result);
     gproji_tell(result, "; but the mesh is spoiled: ");
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
         int32_t count = d.count[kind], at = d.first[kind];
@@ -23297,7 +23297,8 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
         form->solve.loop.iterations <= GPROJI_SAFE_MOST)
         gproji_tell(result, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
     else if (!known && strlen(result->message) + strlen(help) < sizeof result->message)
-        gproji_tell(result, help);
+        gproji_tell(result, "%s", help);
+    if (result->outcome == GPROJ_CONVERGED) gproji_tell_asymptotic(form, result);
 }
 
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */

@@ -211,12 +211,21 @@ static void bench_insert(bench_rows *rows, int64_t start, int64_t end, int32_t v
     rows->gradient[end] = gradient;
 }
 
+/* The metric of steps by multipliers at a node: 1, and more beside small faces. */
+static double bench_metric_at(const gproji_schur *schur, int32_t node) {
+    double metric = 1;
+    int64_t k;
+    for (k = schur->w.entry_start[node]; schur->turns[node] && k < schur->w.entry_start[node + 1]; ++k)
+        metric += schur->share[schur->w.entry[k]];
+    return metric;
+}
+
 /* eps^2 for all variables; where steps are found by multipliers, none for auxiliary ones and more at small faces. */
 static void bench_regularise(gproj_system *s, bench_rows *rows) {
     int32_t v;
     if (s->schur.on) gproji_schur_assemble(s, BENCH_EPSILON);
     for (v = 0; v < s->variable_count; ++v) {
-        double metric = !s->schur.on ? 1 : s->blocks.auxiliary[v] ? 0 : s->schur.metric[s->nodes.of[v]];
+        double metric = !s->schur.on ? 1 : s->blocks.auxiliary[v] ? 0 : bench_metric_at(&s->schur, s->nodes.of[v]);
         rows->regularisation[v] = BENCH_EPSILON * BENCH_EPSILON * metric;
     }
 }

@@ -92,7 +92,7 @@ Outcome = _enum("gproj_outcome", "Outcome", "GPROJ_", "CONVERGED ITERATION_LIMIT
 Format = _enum("gproj_format", "Format", "GPROJ_FORMAT_", "DETECT OBJ OFF")
 Scheme = _enum("gproj_scheme", "Scheme", "GPROJ_", "CATMULL_CLARK LOOP")
 Unit = _enum("gproj_unit", "Unit", "GPROJ_UNIT_", "NUMBER LENGTH POINT")
-MESSAGE_SIZE, NAME_SIZE, LAST_GUIDING = 512, 32, -1
+MESSAGE_SIZE, NAME_SIZE, LAST_GUIDING = 768, 32, -1
 
 
 class _Struct(ctypes.Structure):
@@ -126,7 +126,7 @@ _struct("gproj_parallel", "pointer run, user")
 _struct("gproj_clock", "pointer now, user")
 _struct("gproj_host", "allocator allocator; parallel parallel; clock clock")
 _struct("gproj_memory", "size used, peak; uint64 allocations")
-_Error = _struct("gproj_error", "code code; place place; int64 index; char[512] message")
+_Error = _struct("gproj_error", "code code; place place; int64 index; char[768] message")
 _LeastSquares = _struct("gproj_least_squares", "int32 rows, columns; pointer start, row, value, b, lower, upper; "
                         "double damping")
 _LeastSquaresResult = _struct("gproj_least_squares_result", "least_squares_outcome outcome; int32 factorisations, "
@@ -145,7 +145,7 @@ _SolveOptions = _struct("gproj_solve_options", "double tolerance, epsilon, time_
 _struct("gproj_spoiled", "int32 turned, crossed, folded, collapsed_edges, collapsed_faces, spikes, total; place place; "
         "int32 element")
 _struct("gproj_result", "outcome outcome; int32 iterations, damped, attempts; double residual, tolerance, step, "
-        "optimality; int32 worst_group, worst_element; spoiled spoiled; double[5] seconds; char[512] message")
+        "optimality; int32 worst_group, worst_element; spoiled spoiled; double[5] seconds; char[768] message")
 _Mesh = _struct("gproj_mesh", "int32 vertex_count, face_count, edge_count, halfedge_count, loop_count, component_count, "
                 "isolated_count, reoriented_count; pointer position, vertex_halfedge, face_halfedge, face_degree, "
                 "loop_halfedge, twin, next, prev, origin, face, edge; int32 polyline_count; pointer polyline_start, "
