@@ -6731,7 +6731,7 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
 }
 
 /* ============================================================================================================
-   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, symbolic, cholesky.
+   >>least-squares   Sparse linear least squares with bounds. Uses platform, memory, error, cholesky.
 
    An interior-point method finds which variables are at their bounds; Newton steps on the others, with exchanges for
    the few mistakes, make the solution exact. All matrices are
@@ -15090,7 +15090,7 @@ GPROJ_API gproj_curve_hit gproj_curve_closest(const gproj_curve *curve, const do
 }
 
 /* ============================================================================================================
-   >>surface   Polygon meshes as reference surfaces. Uses platform, memory, error, vector, mesh, hierarchy, curve.
+   >>surface   Polygon meshes as reference surfaces. Uses platform, memory, error, vector, mesh, hierarchy.
 
    Faces are cut into triangles: convex ones into a fan about their first corner, others by cutting ears (Meisters
    1975) in the plane orthogonal to their vectorial area. The cut depends on geometry only if a face is clearly not
@@ -22086,8 +22086,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
 }
 
 /* ============================================================================================================
-   >>guard   A face must not lose its area on the way. Uses platform, memory, error, vector, stream, system, loop, mesh,
-   form.
+   >>guard   A face must not lose its area on the way. Uses platform, vector, stream, system, loop, mesh, form.
 
    On the way to planarity a skew face may collapse and come out turned over in its own plane; on the way to equilibrium
    a loaded face may. In the first half of the iterations with wishes, else while closeness guides, and two iterations
@@ -22192,8 +22191,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
 }
 
 /* ============================================================================================================
-   >>corners   Faces keep their corners and edges. Uses platform, memory, error, vector, stream, system, loop, mesh,
-   measure, form, catalogue, guard.
+   >>corners   Faces keep their corners and edges. Uses platform, error, vector, stream, system, loop, mesh, measure,
+   form, catalogue.
 
    Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular
    one may have lost an edge. So every corner of a face keeps a part of the area that it had
@@ -22593,8 +22592,8 @@ GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
 }
 
 /* ============================================================================================================
-   >>verdict   What a form adds to the verdict of a solve. Uses platform, memory, error, vector, system, loop, mesh,
-   measure, form, catalogue, statics, guard.
+   >>verdict   What a form adds to the verdict of a solve. Uses platform, error, vector, system, loop, mesh, measure,
+   form, catalogue, statics.
 
    The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
    equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
@@ -23341,7 +23340,7 @@ GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result
 
 /* ============================================================================================================
    >>solve   A form's solve: positions in, guidance, guard, the system's solve, positions out. Uses platform,
-   memory, error, parallel, vector, system, loop, mesh, measure, form, catalogue, statics, guard, corners, verdict. */
+   memory, error, parallel, vector, system, loop, mesh, form, catalogue, statics, guard, corners, verdict. */
 
 /* Sets x from the mesh's positions, in internal units, and gives all unknowns their start values for these (the parts'
    `start`): the beginning of each solve and drag. */
@@ -23912,8 +23911,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 }
 
 /* ============================================================================================================
-   >>state   A form's state as a block of bytes. Uses platform, error, stream, system, schur, loop, curve, form,
-   catalogue, statics, guard, corners, solve.
+   >>state   A form's state as a block of bytes. Uses platform, error, stream, system, loop, form, corners, solve.
 
    gproji_pass_state describes the format (see >>stream):
 
@@ -24171,7 +24169,7 @@ GPROJ_API gproj_code gproj_state_restore(gproj_form *form, const void *state, si
 
 /* ============================================================================================================
    >>drag   The tangent space of what must hold, and its response to handles. Uses platform, memory, error,
-   vector, dense, cholesky, system, schur, loop, mesh, form, catalogue, guard, solve, state.
+   vector, dense, system, loop, mesh, form, solve, state.
 
    Based on Tang et al. (2014), section 4. With the metric D (1 for vertices, light^2 for other variables), a force f at
    the handles' vertices brings about the smallest dx in the tangent space, a projection,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # check_sections.sh - the header reads from top to bottom: cut at any section banner, what comes before compiles; tags
 # are unique and the manual's contents name them all, in order; no static function is declared ahead; and the banner of
-# each section of the implementation names the sections whose functions, types and constants it uses, and no later ones.
+# each section of the implementation names the sections whose functions, types and constants it uses, and no others.
 #
 # A banner is a comment that begins with a line of - or = and goes on with >>tag. The manual is everything before the
 # first banner; its table of contents are its lines that begin with >>tag.
@@ -47,6 +47,7 @@ for tag, begin, end in zip([tag for tag in tags if not tag.startswith("api-")], 
     used = {home[word] for word in re.findall(r"\bgproji?_\w+|\bGPROJI_\w+", body) if word in home}
     wrong += [f">>{tag} uses {other}" for other in names if other in used - stated]
     wrong += [f">>{tag} cannot use {other}" for other in tags if other in stated - set(names)]
+    wrong += [f">>{tag} does not use {other}" for other in names if other in stated - used]
     names.append(tag)
     for pattern in DEFINED:
         for word in re.findall(pattern, body, re.M):
