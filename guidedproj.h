@@ -1039,13 +1039,13 @@ GPROJ_API gproj_mesh *gproj_mesh_dual(const gproj_mesh *mesh, int32_t *vertex_fa
                                       gproj_error *error);
 
 /* Makes the mesh along the diagonals (the ambo of Conway, the medial mesh). Vertex e is the midpoint of edge e; each
-   face becomes the one of its sides' midpoints, with the same number; after these each vertex with faces, in ascending
-   order, becomes the face of its edges' midpoints. In a mesh of quads the new edges are parallel to the diagonals, the
-   faces of quads are parallelograms, hence flat, and vertices of valence 4 become quads. Where edges follow asymptotic
-   directions of a saddle-shaped surface, faces cannot become flat; those of the mesh along the diagonals nearly are. It
-   ends at the boundary as the dual does: the boundary's corners and vertices without a face are its last vertices, and
-   polylines stay if all their vertices do. Refused at an inner vertex with two edges, whose face would have two
-   corners. */
+   face becomes the one whose corners are the midpoints of the sides, with the same number; after these each vertex with
+   faces, in ascending order, becomes that of the midpoints of the edges around it. In a mesh of quads the new edges are
+   parallel to the diagonals, the faces of quads are parallelograms, hence flat, and vertices of valence 4 become quads.
+   Where edges follow asymptotic directions of a saddle-shaped surface, faces cannot become flat; those of the mesh
+   along the diagonals nearly are. It ends at the boundary as the dual does: the boundary's corners and vertices without
+   a face come last, and polylines stay if all their vertices do. Refused at an inner vertex with two edges, whose face
+   would have two corners. */
 GPROJ_API gproj_mesh *gproj_mesh_diagonals(const gproj_mesh *mesh, const gproj_host *host, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
