@@ -1211,6 +1211,7 @@ GPROJT_TEST(planes_that_spread_are_named) {
                          (k > 0));
             if (k == 0) GPROJT_CHECK(strstr(result.message, "and others likewise") != NULL);
             if (k == 0) GPROJT_CHECK(strstr(result.message, "chessboard") == NULL);
+            if (k == 0) GPROJT_CHECK(strstr(result.message, "keep it whole") == NULL); /* that is for unknown reasons */
             gproj_form_destroy(form);
             gproj_mesh_destroy(mesh);
         }
