@@ -16198,9 +16198,7 @@ GPROJ_API int32_t gproj_edit_remove_strip(gproj_edit *edit, int32_t edge, double
    gproj_mesh_diagonals, where each half-edge gives two and boundary vertices one more. */
 typedef struct gproji_dual {
     gproji_draft draft;
-    int32_t *vertex;   /* vertex_count: a vertex's number in the new mesh, or -1 */
-    int32_t *midpoint; /* edge_count: the vertex amid a boundary edge, or -1 */
-    int32_t *seen;     /* face_count: the last face that met it as a neighbour */
+    int32_t *vertex; /* vertex_count: a vertex's number in the new mesh, or -1 */
 } gproji_dual;
 
 /* Adds a vertex at the mean over `count` half-edges' origins, h and those that follow it. */
@@ -16246,21 +16244,24 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
                                              gproj_error *error) {
     gproji_draft *draft = &dual->draft;
     gproji_soup *soup = &draft->soup;
+    int32_t *midpoint = gproji_take_ints(&draft->pool, mesh->edge_count); /* the vertex amid a boundary edge, or -1 */
+    int32_t *seen = gproji_take_ints(&draft->pool, mesh->face_count);     /* the last face that met it as a neighbour */
     int32_t f, e, v, k, h, g, begin;
+    if (draft->pool.failed) return gproji_fail_memory(error);
     /* 1. No two faces may have two edges in common. */
-    gproji_fill(dual->seen, mesh->face_count, -1);
+    gproji_fill(seen, mesh->face_count, -1);
     for (f = 0; f < mesh->face_count; ++f)
         for (k = 0, h = mesh->face_halfedge[f]; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
             g = mesh->face[h ^ 1];
-            if (g >= 0 && dual->seen[g] == f)
+            if (g >= 0 && seen[g] == f)
                 return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
                                    "there is no dual: faces %d and %d have more than one edge in common", f, g);
-            if (g >= 0) dual->seen[g] = f;
+            if (g >= 0) seen[g] = f;
         }
     /* 2. Vertices: faces, boundary edges, corners, isolated vertices. */
     for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
     for (e = 0; e < mesh->edge_count; ++e)
-        dual->midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
+        midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
     gproji_dual_keep(mesh, dual);
     /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
        corner. */
@@ -16271,12 +16272,12 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
         if (last < 0) continue;
         begin = soup->corner_count;
         h = boundary ? gproji_rotate(mesh, last) : last;
-        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[h / 2];
+        if (boundary) draft->corner[soup->corner_count++] = midpoint[h / 2];
         do {
             draft->corner[soup->corner_count++] = mesh->face[h];
             h = gproji_rotate(mesh, h);
         } while (h != last);
-        if (boundary) draft->corner[soup->corner_count++] = dual->midpoint[last / 2];
+        if (boundary) draft->corner[soup->corner_count++] = midpoint[last / 2];
         if (dual->vertex[v] >= 0) draft->corner[soup->corner_count++] = dual->vertex[v];
         draft->degree[soup->face_count++] = soup->corner_count - begin;
     }
@@ -16319,7 +16320,6 @@ GPROJI_INTERNAL gproj_code gproji_diagonals_build(const gproj_mesh *mesh, gproji
 GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagonals, int32_t *vertex_face,
                                              const gproj_host *host, gproj_error *error) {
     gproji_dual dual;
-    gproji_pool *pool = &dual.draft.pool;
     gproj_code code;
     int64_t vertices, edges, faces, corners;
     if (!gproji_given(mesh, "mesh", error) ||
@@ -16336,14 +16336,13 @@ GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagon
     if (!gproji_draft_begin(&dual.draft, faces + edges + vertices, faces + vertices, corners, mesh->polyline_count,
                             mesh->polyline_start[mesh->polyline_count], host, error))
         return NULL;
-    dual.vertex = gproji_take_ints(pool, vertices);
-    dual.midpoint = gproji_take_ints(pool, edges);
-    dual.seen = gproji_take_ints(pool, faces);
-    if (pool->failed)
+    dual.vertex = gproji_take_ints(&dual.draft.pool, vertices);
+    if (!dual.vertex)
         code = gproji_fail_memory(error);
+    else if (diagonals)
+        code = gproji_diagonals_build(mesh, &dual, error);
     else
-        code =
-            diagonals ? gproji_diagonals_build(mesh, &dual, error) : gproji_dual_build(mesh, &dual, vertex_face, error);
+        code = gproji_dual_build(mesh, &dual, vertex_face, error);
     return gproji_draft_end(&dual.draft, code);
 }
 
@@ -22740,10 +22739,11 @@ typedef struct gproji_spread {
     int32_t *queue;      /* vertices in the plane that are not held */
     const double *value; /* 3 per vertex: the place of a held one */
     double point[3], normal[3];
-    int32_t plane;  /* number of this one, from 1 */
-    int32_t count;  /* in the queue */
-    int32_t vertex; /* the farthest off the plane of those that are to be in it, held or on a side that avoids it; */
-    double off;     /* and how far; -1, 0: none */
+    int32_t plane; /* number of this one, from 1 */
+    int32_t count; /* in the queue */
+    int32_t
+        vertex; /* to be in the plane, but held off it, the farthest one, or on a side that avoids it; -1: none is, */
+    double off; /* and how far off it is */
 } gproji_spread;
 
 static const double gproji_plane_near = 1e-6, gproji_plane_far = 1e-3; /* mean edges; in the plane, and certainly not */
@@ -22827,9 +22827,11 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
         double off;
         if (gproji_is_in_plane(s, v)) continue;
         off = fabs(gproji_off_plane(s, v));
-        if ((gproji_stays(s, v) ? off > gproji_plane_far : s->kept[v] < 0 && gproji_avoids_plane(s, v)) && off > s->off)
-            s->off = off, s->vertex = v;
-        if (gproji_stays(s, v)) continue;
+        if (gproji_stays(s, v)) {
+            if (off > gproji_plane_far && off > s->off) s->off = off, s->vertex = v;
+            continue;
+        }
+        if (s->vertex < 0 && s->kept[v] < 0 && gproji_avoids_plane(s, v)) s->off = off, s->vertex = v;
         s->looked[v] = s->plane;
         s->queue[s->count++] = v;
     }
@@ -23002,7 +23004,7 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
    hyperbolic paraboloid, it is the other way round. Each of these directions is conjugate to itself alone, so flat
    faces near such a mesh are thin ones; the directions halfway between them, those of the diagonals, are conjugate. */
 
-/* Does the mesh twist more around an inner vertex with four quads than it bends along its edges? */
+/* Does the mesh twist more than twice as much around an inner vertex with four quads as it bends along edges there? */
 GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, int32_t vertex) {
     static const double sign[4] = {0.25, -0.25, 0.25, -0.25}, noticeable = 1e-6; /* mean edges */
     double edge[4][3], diagonal[3], cross[3], normal[3] = {0, 0, 0}, mixed[3] = {0, 0, 0}, bend = 0;
@@ -23026,7 +23028,7 @@ GPROJI_INTERNAL bool gproji_twists_at(const gproj_mesh *mesh, const double *x, i
     return fabs(gproji_dot3(mixed, normal)) > gproji_fmax(2 * bend, noticeable * gproji_length3(normal));
 }
 
-/* Says that edges of faces that are to be flat follow asymptotic directions, if they do nearly everywhere. */
+/* Where faces are to be flat: says that edges follow asymptotic directions, if they do nearly everywhere. */
 GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
     const char *clause =
@@ -23035,23 +23037,23 @@ GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result
     int32_t inner = 0, twisted = 0, v;
     if (!gproji_is_on(form, form->planarity)) return;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], h = start;
-        bool quads = true;
+        int32_t start = mesh->vertex_halfedge[v], h = start, faces = 0, quads = 0;
         if (start < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
         do {
-            quads = quads && mesh->face_degree[mesh->face[h]] == 4;
+            ++faces;
+            quads += mesh->face_degree[mesh->face[h]] == 4;
             h = gproji_rotate(mesh, h);
         } while (h != start);
         ++inner;
-        twisted += quads && gproj_mesh_valence(mesh, v) == 4 && gproji_twists_at(mesh, form->original, v);
+        twisted += faces == 4 && quads == 4 && gproji_twists_at(mesh, form->original, v);
     }
     if (twisted > 0.9 * inner && strlen(result->message) + strlen(clause) < sizeof result->message)
         gproji_tell(result, "%s", clause);
 }
 
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
-   vertices are held; else a plane that spreads, or angles, if no face has been let go.
-   Returns true in the first case alone: no other attempt can help. */
+   vertices are held; else a plane that spreads, or angles, if no face has been let go. Returns true in the first case
+   alone: no other attempt can help. */
 GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
     double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
     double *value = gproji_spare(form->system, 1), worst = 0;
