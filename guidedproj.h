@@ -1561,10 +1561,11 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      gproj_result.spoiled counts the damage.
    - If the constraints do not hold at the end, or the mesh is spoiled, up to two more attempts follow, each if at least
      8 of the `iterations` are left: the second, if the first holds on a spoiled mesh, guided by closeness to where the
-     solve began with weights 0.3 * 0.7^n for 20 iterations, others (or with skip_closeness) with stiffer steps. Wishes
-     that end are left out there: the way they have guided was no good. None follows where a demand can never hold. The
-     best end counts, the earlier one of equals, or one that is cancelled or fails (gproj_result.attempts). Not in
-     frames (gproj_solve_begin).
+     solve began with weights 0.3 * 0.7^n for 20 iterations, others (or with skip_closeness) with stiffer steps. If all
+     holds, but on a spoiled mesh still, one more is guided by fairness with weights 0.1 * 0.7^n for 20 iterations (not
+     with skip_closeness). Wishes that end are left out there: the way they have guided was no good. None follows where
+     a demand can never hold. The best end counts, the earlier one of equals, or one that is cancelled or fails
+     (gproj_result.attempts). Not in frames (gproj_solve_begin).
    Iterations are a limit there, no schedule: allow 300.
 
    For the mesh nearest to the one at the beginning, or the one that serves the wishes best, set
@@ -1574,7 +1575,7 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
    minimum with these, and lets them go only if the constraints do not hold at the end.
 
    Not all meshes have a minimum that is whole and can be reached. With options->smooth as well only the first attempt
-   looks for it. If that ends on a spoiled mesh, or the constraints do not hold, up to three smooth attempts follow from
+   looks for it. If that ends on a spoiled mesh, or the constraints do not hold, up to four smooth attempts follow from
    the beginning, with up to three times as many iterations, in which wishes that would stay only guide (scaled to a
    largest weight of 0.03). Where one of these ends better its mesh counts, which is farther away, and the outcome is
    never GPROJ_CONVERGED: GPROJ_ITERATION_LIMIT with residual <= tolerance if all holds. Not in frames. */
@@ -18826,6 +18827,7 @@ typedef enum gproji_own {
     GPROJI_OWN_METRIC,
     GPROJI_OWN_CORNERS,
     GPROJI_OWN_BRAKE,
+    GPROJI_OWN_FAIRNESS,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -23396,21 +23398,28 @@ GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
 static const double gproji_metric_relative = 0.7; /* power of an edge's length that differences are divided by */
 static const double gproji_metric_force = 0.3;    /* of changes of forces, once steps fail */
-/* How the attempts of a smooth solve begin: the first, the one nearby, the stiffer ones. Closeness to the start is no
-   bias by default; where constraints have led far away, such as a shape that hangs to one that stands, it finds what
-   there is nearby. Wishes that end have only guided to an end that is not good, so later attempts go without them. */
+/* How the attempts of a smooth solve begin: the first, the one nearby, the fair one, the stiffer ones. Closeness to the
+   start is no bias by default; where constraints have led far away, such as a shape that hangs to one that stands, it
+   finds what there is nearby. Fairness leads past creases and crossed faces that the start leads into. Wishes that end
+   have only guided to an end that is not good, so later attempts go without them. */
 typedef struct gproji_beginning {
     double stiffness;
-    double closeness; /* its weight at first; it fades by 0.7 an iteration and lasts for 20 */
-    bool left_out;    /* callers' wishes that end have no weight */
-    bool fading;      /* wishes end that would act to the end: a minimum of them was looked for in vain */
+    double closeness, fairness; /* their weights at first; they fade by 0.7 an iteration and last for 20 */
+    bool left_out;              /* callers' wishes that end have no weight */
+    bool fading;                /* wishes end that would act to the end: a minimum of them was looked for in vain */
 } gproji_beginning;
-static const gproji_beginning gproji_beginnings[] = {
-    {1, 0, false, false}, {10, 0.3, true, false}, {10, 0, true, false}, {3, 0, true, false}};
+static const gproji_beginning gproji_beginnings[] = {{1, 0, 0, false, false},
+                                                     {10, 0.3, 0, true, false},
+                                                     {1, 0, 0.1, true, false},
+                                                     {10, 0, 0, true, false},
+                                                     {3, 0, 0, true, false}};
 enum {
     GPROJI_NEARBY = 1,
-    GPROJI_ATTEMPTS_MOST = 3,
-    GPROJI_ATTEMPT_LEAST = 8 /* iterations that must be left for another one */
+    GPROJI_FAIR,
+    GPROJI_STIFF,
+    GPROJI_ATTEMPTS_MOST = 4, /* the last of them is the fair one */
+    GPROJI_ATTEMPT_LEAST = 8, /* iterations that must be left for another one */
+    GPROJI_NEAREST_SHARE = 3  /* times the iterations, for all attempts after one for the nearest mesh */
 };
 
 static const gproji_rule gproji_smooth_change_rule = {"smooth change",   GPROJ_WISH,    GPROJ_PLACE_NONE,
@@ -23464,6 +23473,8 @@ GPROJI_INTERNAL void gproji_set_metric(gproj_form *form, int32_t group) {
 
 static const gproji_rule gproji_drag_fairness_rule = {"drag fairness",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
                                                       GPROJI_OWN_DRAG_FAIRNESS, GPROJI_ORDINARY, NULL};
+static const gproji_rule gproji_default_fairness_rule = {"default fairness",  GPROJ_WISH,   GPROJ_PLACE_VERTEX,
+                                                         GPROJI_OWN_FAIRNESS, GPROJI_GUIDE, NULL};
 static const gproji_rule gproji_drag_handles_rule = {"drag handles",          GPROJ_WISH,      GPROJ_PLACE_VERTEX,
                                                      GPROJI_OWN_DRAG_HANDLES, GPROJI_ORDINARY, NULL};
 
@@ -23475,6 +23486,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (!gproji_form_ready(form) || gproji_own_part(form, own)) return;
     if (points) gproji_add_points(gproji_new_list_part(form, points, 0, NULL), NULL, 0);
     if (own == GPROJI_OWN_DRAG_FAIRNESS) gproji_add_fairness(form, &gproji_drag_fairness_rule, 0);
+    if (own == GPROJI_OWN_FAIRNESS) gproji_add_fairness(form, &gproji_default_fairness_rule, 0);
     if (own == GPROJI_OWN_GUARD) gproji_add_guard(form);
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
     if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
@@ -23523,7 +23535,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. If the nearest mesh is asked for,
-   closeness defines "near"; an attempt nearby has that of its beginning; `skip`: neither, and what an earlier solve has
+   closeness defines "near"; later attempts have what their beginning says; `skip`: neither, and what an earlier solve has
    left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
@@ -23531,9 +23543,12 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
     int32_t half = gproji_max(1, iterations - iterations / 2), i;
     gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
     const gproji_part *part;
+    gproj_schedule fairness = gproj_fade(beginning->fairness, 20);
     if (nearby) schedule = gproj_fade(beginning->closeness, 20);
     schedule.decay = nearby ? 0.7 : 0.3;
     if (nearest && wanted) schedule = gproj_keep(1);
+    fairness.decay = 0.7;
+    gproji_schedule_own(form, GPROJI_OWN_FAIRNESS, fairness);
     part = gproji_schedule_own(form, GPROJI_OWN_CLOSENESS, schedule);
     for (i = 0; part && i < 3 * form->mesh->vertex_count; ++i)
         gproj_system_set_row(form->system, part->group, i, NULL, -gproj_system_values(form->system)[i]);
@@ -23603,7 +23618,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
-    gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness > 0);
+    gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness + beginning->fairness > 0);
     guided = gproji_set_default_guidance(form, iterations, beginning, skip_closeness || smooth, nearest);
     /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
     metric = smooth && !skip_closeness;
@@ -23772,7 +23787,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     gproj_solve_options how = *options;
     gproji_beginning beginning = gproji_beginnings[0];
     gproj_result result;
-    int32_t first = options->nearest ? 1 : 0, used, left, attempt = 1, stiffer = GPROJI_NEARBY + 1, k;
+    int32_t first = options->nearest ? 1 : 0, used, left, attempt = 1, stiffer = GPROJI_STIFF, k;
     if (!start || !end) {
         gproji_give(&form->heap, start, count, sizeof *start);
         gproji_give(&form->heap, end, count, sizeof *end);
@@ -23785,21 +23800,26 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     left = iterations - used;
     wished = how.nearest && result.optimality > 0;
     if (how.nearest)
-        left = GPROJI_ATTEMPTS_MOST * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_ATTEMPTS_MOST);
+        left = GPROJI_NEAREST_SHARE * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_NEAREST_SHARE);
     how.nearest = false;
     for (; attempt < first + GPROJI_ATTEMPTS_MOST && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0 &&
            !form->solve.futile && !form->solve.loop.steered;
          ++attempt) {
+        bool holds = gproji_lack(&result) < 1 && !how.skip_closeness,
+             last = attempt == first + GPROJI_ATTEMPTS_MOST - 1;
         gproj_result other;
         /* 1. Is there enough left for another one? */
-        if (left < GPROJI_ATTEMPT_LEAST) break;
+        if (left < GPROJI_ATTEMPT_LEAST || (last && !holds)) break;
         if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
-        /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh at first, there may be a
-           whole one nearby; otherwise stiffer steps may lead on. */
-        k = attempt == first + 1 && gproji_lack(&result) < 1 && !how.skip_closeness ? GPROJI_NEARBY : stiffer;
-        if (attempt == first) k = 0;
-        if (k == stiffer) ++stiffer;
+        /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh, there may be a whole one
+           nearby, or, in the end, one that is fairer; otherwise stiffer steps may lead on. */
+        if (attempt == first)
+            k = 0;
+        else if (holds && attempt == first + 1)
+            k = GPROJI_NEARBY;
+        else
+            k = last ? GPROJI_FAIR : stiffer++;
         beginning = gproji_beginnings[k];
         beginning.fading = options->nearest;
         beginning.left_out = beginning.left_out && !options->nearest;
