@@ -6120,8 +6120,8 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables, of which a system has
-   at most GPROJI_VARIABLES_MAX. */
+/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables. A system has at most
+   GPROJI_VARIABLES_MAX of them. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, const gproji_graph *graph,
                                                           gproj_ordering ordering) {
     gproj_cholesky_options choice;
