@@ -2440,7 +2440,7 @@ GPROJI_INTERNAL gproji_heap gproji_heap_of(const gproj_host *host) {
 
 /* count * size, at least 1; SIZE_MAX if that overflows, which gproji_retake refuses. */
 GPROJI_INTERNAL size_t gproji_bytes(size_t count, size_t size) {
-    if (count > (SIZE_MAX / 2) / size) return SIZE_MAX;
+    if (count > SIZE_MAX / size) return SIZE_MAX;
     return count ? count * size : size;
 }
 
@@ -3358,9 +3358,10 @@ GPROJI_KERNEL(avx512) void gproji_add_avx512(const gproji_piece *piece, int32_t 
             for (i = 0; i < columns; ++i)
                 GPROJI_ADD_AT(to[i] + d, _mm512_maskz_permutexvar_pd(spread, row,
                                                                      _mm512_maskz_loadu_pd(rows, from[i] + s)));
+        } else {
+            for (i = 0; i < columns; ++i)
+                for (r = 0; r < 8 * run; r += 8) GPROJI_ADD_AT(to[i] + d + r, _mm512_loadu_pd(from[i] + s + r));
         }
-        for (i = 0; run > 0 && i < columns; ++i)
-            for (r = 0; r < 8 * run; r += 8) GPROJI_ADD_AT(to[i] + d + r, _mm512_loadu_pd(from[i] + s + r));
     }
 }
 #endif
@@ -4395,7 +4396,7 @@ typedef struct gproji_nd {
     gproji_heap *heap;
     bool failed;         /* out of memory */
     unsigned char *kind; /* nodes: GPROJI_ND_KEPT, ... */
-    int32_t kept, dominated;
+    int32_t kept;
     double unit;     /* sqrt(mean weight of a node): a separator in n nodes of a mesh has about sqrt(n) */
     double openness; /* see gproji_rim */
     int32_t *order;  /* kept: the result */
@@ -4486,7 +4487,6 @@ GPROJI_INTERNAL bool gproji_nd_begin(gproji_nd *nd, gproji_pool *pool, int32_t t
             if (nd->kind[a] != GPROJI_ND_KEPT || graph->weight[a] >= graph->weight[b]) continue;
             if (!gproji_nd_dominates(graph, number, b, a)) continue;
             nd->kind[a] = GPROJI_ND_DOMINATED;
-            nd->dominated++;
         }
     }
     /* 2. Number the others in breadth-first order, which keeps neighbours near each other in memory. */
@@ -5285,7 +5285,7 @@ GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph
         for (b = 0; b < graph->nodes; ++b) nd.number[b] = -1;
         for (k = 0; k < nd.kept; ++k) {
             b = nd.order[k];
-            for (e = graph->start[b]; nd.dominated > 0 && e < graph->start[b + 1]; ++e) {
+            for (e = graph->start[b]; e < graph->start[b + 1]; ++e) {
                 a = graph->adjacent[e];
                 if (nd.kind[a] != GPROJI_ND_DOMINATED || !gproji_nd_dominates(graph, nd.number, b, a)) continue;
                 nd.kind[a] = GPROJI_ND_PLACED;
@@ -6121,7 +6121,8 @@ GPROJI_INTERNAL void gproji_map_rows(const gproj_cholesky *c, int32_t f, const i
     }
 }
 
-/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables. */
+/* Analyses by blocks, for the system: node i of the graph is weight[i] >= 1 consecutive variables. A system has at most
+   GPROJI_VARIABLES_MAX of them. */
 GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, const gproji_graph *graph,
                                                           gproj_ordering ordering) {
     gproj_cholesky_options choice;
@@ -6130,12 +6131,7 @@ GPROJI_INTERNAL gproj_code gproji_cholesky_analyse_blocks(gproj_cholesky *c, con
     choice.ordering = ordering;
     gproji_cholesky_forget(c);
     gproji_error_clear(&c->error);
-    for (i = 0; i < graph->nodes; ++i) {
-        if (graph->weight[i] > GPROJI_COLUMNS_MAX - columns)
-            return gproji_fail(&c->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
-                               "the matrix would have more than %d columns", (int32_t)GPROJI_COLUMNS_MAX);
-        columns += graph->weight[i];
-    }
+    for (i = 0; i < graph->nodes; ++i) columns += graph->weight[i];
     c->analysed = gproji_cholesky_analyse_graph(c, graph, columns, &choice, NULL);
     if (c->analysed) return GPROJ_OK;
     gproji_cholesky_forget(c);

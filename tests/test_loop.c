@@ -1259,6 +1259,23 @@ GPROJT_TEST(a_wish_that_never_fades) {
     }
 }
 
+/* Where wishes have to end, those that would act in the last iteration fade earlier, and act less until then. */
+GPROJT_TEST(wishes_up_to_the_last_iteration_fade) {
+    static const int32_t last[3] = {49, 50, INT32_MAX};
+    gproji_loop loop;
+    gproji_group wish;
+    int32_t k;
+    memset(&loop, 0, sizeof loop);
+    memset(&wish, 0, sizeof wish);
+    loop.iterations = 50, loop.wishes.last = 25, loop.wishes.fading = 0.25;
+    wish.kind = GPROJ_WISH;
+    for (k = 0; k < 3; ++k) {
+        wish.schedule = gprojt_schedule(2, 0, last[k]);
+        GPROJT_CHECK(gproji_weight_in(&loop, &wish, 25) == (k > 0 ? 0.5 : 2));
+        GPROJT_CHECK(gproji_weight_in(&loop, &wish, 26) == (k > 0 ? 0 : 2));
+    }
+}
+
 /* What a weight below epsilon cannot do is not called a conflict. */
 GPROJT_TEST(weights_below_epsilon) {
     static const double weights[3] = {1e-9, 1e-6, 1e-4}, epsilons[3] = {0, 1e-5, 1e-2};
@@ -1765,6 +1782,7 @@ int main(void) {
     GPROJT_RUN(conflicts_of_the_last_digits);
     GPROJT_RUN(one_group_is_no_conflict);
     GPROJT_RUN(a_wish_that_never_fades);
+    GPROJT_RUN(wishes_up_to_the_last_iteration_fade);
     GPROJT_RUN(weights_below_epsilon);
     GPROJT_RUN(stiffness_of_the_next_step);
     GPROJT_RUN(metrics_rest_at_the_end);

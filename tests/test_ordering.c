@@ -748,7 +748,9 @@ GPROJT_TEST(dissection_orders_leaves) {
         }
         n = g.nodes;
         graph_finish(&g, 1);
-        for (i = 0; i < n; ++i) g.weight[i] = tries % 2 ? 1 + gprojt_below(&seed, 300) : 3;
+        /* All weigh 3, or 3 and 4, where bits 0 and 1 are one plane, or anything. */
+        for (i = 0; i < n; ++i)
+            g.weight[i] = tries % 3 < 2 ? 3 + gprojt_below(&seed, 1 + tries % 3) : 1 + gprojt_below(&seed, 300);
         graph_weigh(&g);
         GPROJT_REQUIRE(begin_dissection(&nd, &pool, &heap, &g));
         /* The part is the first `nodes`, in the order of their names. */
