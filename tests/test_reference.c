@@ -497,6 +497,15 @@ GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces, and spirals */
         gprojt_add_face(&s, n, corner);
         gprojt_check_cover(&s);
     }
+    for (round = 0; round < 4; ++round) { /* a quad with a notch, from each corner on */
+        gprojt_soup s;
+        int32_t i, corner[4];
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < 4; ++i)
+            corner[(i + round) % 4] = gprojt_add_vertex(&s, i == 1 ? 2 : i == 2 ? 0.5 : 0, i == 3 ? 2 : i == 2 ? 0.5 : 0, 0);
+        gprojt_add_face(&s, 4, corner);
+        gprojt_check_cover(&s);
+    }
     for (round = 200; round <= 1360; round += 290) {
         gprojt_soup s;
         memset(&s, 0, sizeof s);
