@@ -23197,8 +23197,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     gproji_loads_at(form->mesh, loads, s->load_scale, form->scale, gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
     g = gproji_group_at(form->system, s->group);
-    for (r = 0; r < g->row_count; ++r)
-        if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
+    for (r = 0; r < g->row_count; ++r) worst = gproji_fmax(worst, fabs(g->row[r].phi)); /* 0 without weight */
     part = largest > 0 ? worst / largest : 0;
     /* 2. No loads are left, or they are too small to be seen. */
     follow = (!loads->edge_density && loads->density != 0) || loads->area_load != 0 || loads->snow != 0;

@@ -1382,6 +1382,16 @@ GPROJT_TEST(angles_of_circles_are_named) {
         memset(&options, 0, sizeof options);
         gprojt_add_sheared(&soup, 7, k == 1 || k == 12 ? 8 : 7, k == 5 || k == 8, 0);
         if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 12) { /* vertex 1 is a corner of the colour of vertex 0 */
+            for (v = 0; v < soup.corner_count; ++v) {
+                int32_t *i = soup.corner + v;
+                *i = *i == 1 ? 64 : *i == 64 ? 1 : *i;
+            }
+            for (v = 0; v < 3; ++v) {
+                double x = soup.position[3 + v];
+                soup.position[3 + v] = soup.position[3 * 64 + v], soup.position[3 * 64 + v] = x;
+            }
+        }
         mesh = gprojt_mesh_of(soup);
         for (v = 0; k == 13 && v < mesh->vertex_count; ++v) mesh->position[3 * v] -= 0.05 * mesh->position[3 * v + 1];
         if (k == 11) /* a flat square, uneven inside */
@@ -1404,7 +1414,8 @@ GPROJT_TEST(angles_of_circles_are_named) {
             }
             gproj_add_targets(form, count, list, to, 1);
         } else {
-            held = k == 3 || k == 11 || k == 12 ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
+            bool fixed = k == 3 || k == 11 || k == 12;
+            held = fixed ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
         }
         if (k == 10) gproj_set_element_weights(form, planar, 1, corner, none);
         if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);

@@ -1501,10 +1501,10 @@ GPROJT_TEST(obstacles_are_named) {
 }
 
 /* What contradicts on one edge: signs, also by rows of the caller's (dense ones in the last way) and by bounds of stresses.
-   What has no weight does not, nor bounds that both signs satisfy, nor those of lengths. */
+   What has no weight does not, nor bounds that both signs satisfy, or no force at all, nor those of lengths. */
 GPROJT_TEST(contradictions_are_named) {
     int way;
-    for (way = 0; way < 11; ++way) {
+    for (way = 0; way < 13; ++way) {
         gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0);
         gproj_loads loads = gprojt_no_loads();
         gproj_form *form;
@@ -1523,7 +1523,7 @@ GPROJT_TEST(contradictions_are_named) {
         group.global = way == 10;
         term = gprojt_term(gproj_force_variable(form, edge), -1, -1);
         gproj_add_length_bounds(form, 0, NULL, 0.01, INFINITY, 1);
-        if (way != 9) gproj_add_compression(form, 1, &edge, 1);
+        if (way != 9 && way != 11) gproj_add_compression(form, 1, &edge, 1);
         if (way == 0) gproj_add_tension(form, 1, &edge, 1);
         if (way == 1 || way == 10) own = gproj_system_add_group(gproj_form_system(form), &group);
         if (way == 1 || way == 10) gproj_system_add_row(gproj_form_system(form), own, 1, &term, 0, edge);
@@ -1535,9 +1535,11 @@ GPROJT_TEST(contradictions_are_named) {
         if (way == 7) gproj_add_tension(form, 1, &inside, 1);
         if (way == 8) gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
         if (way == 9) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
+        if (way == 11) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 0, 2, 1);
+        if (way == 12) gproj_add_stress_bounds(form, 1, &edge, NULL, -2, 0, 1);
         result = gproj_solve(form, 20, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && gproj_form_error(form)->code == GPROJ_OK);
-        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way > 8));
+        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way == 9 || way == 10));
         if (strstr(result.message, "is to have both signs")) {
             char words[32];
             snprintf(words, sizeof words, "; edge %d is to have both", (int)edge);
@@ -1584,7 +1586,7 @@ GPROJT_TEST(vertices_without_weight_carry_nothing) {
         form = gprojt_pinned_form(mesh, NULL, &loads);
         gproj_add_fixed(form, 0, NULL, 1);
         for (v = 0; v < mesh->vertex_count; ++v) weight[v] = on;
-        if (way == 2) gproj_solve(form, 1, NULL); /* what was out of balance then */
+        if (way == 2) gproj_solve(form, 0, NULL); /* what was out of balance then */
         gproj_set_element_weights(form, 0, 0, NULL, weight);
         result = gproj_solve(form, 20, &options);
         GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !on);
