@@ -11446,6 +11446,11 @@ GPROJI_INTERNAL void gproji_tell(gproj_result *result, const char *format, ...) 
     va_end(list);
 }
 
+/* Appends advice to the verdict if there is room for all of it: half of a remedy is none. */
+GPROJI_INTERNAL void gproji_tell_whole(gproj_result *result, const char *clause) {
+    if (strlen(result->message) + strlen(clause) < sizeof result->message) gproji_tell(result, "%s", clause);
+}
+
 /* Tells why the rows of the worst group, g, do not hold, and advice, or finds that more iterations may help. */
 GPROJI_INTERNAL void gproji_advise(gproji_loop *loop, const gproji_group *g) {
     gproj_result *result = &loop->result;
@@ -16258,7 +16263,7 @@ GPROJI_INTERNAL gproj_code gproji_dual_build(const gproj_mesh *mesh, gproji_dual
     /* 2. Vertices: faces, boundary edges, corners, isolated vertices. */
     for (f = 0; f < mesh->face_count; ++f) gproji_dual_add(mesh, dual, mesh->face_halfedge[f], mesh->face_degree[f]);
     for (e = 0; e < mesh->edge_count; ++e)
-        midpoint[e] = mesh->face[2 * e + 1] < 0 ? gproji_dual_add(mesh, dual, 2 * e, 2) : -1;
+        if (mesh->face[2 * e + 1] < 0) midpoint[e] = gproji_dual_add(mesh, dual, 2 * e, 2);
     gproji_dual_keep(mesh, dual);
     /* 3. Faces: the faces around a vertex; at the boundary between two midpoints, and with the vertex if it is a
        corner. */
@@ -22869,14 +22874,15 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
     for (k = 0; k < s->count; ++k) {
         int32_t v = s->queue[k], start = mesh->vertex_halfedge[v], h = start;
         const double *own = load + 3 * (size_t)v;
+        bool in = true;
         if (s->form->statics->axes[v] != GPROJI_AXES ||
             !(fabs(gproji_dot3(own, s->normal)) > gproji_plane_far * gproji_length3(own)))
             continue;
         do {
-            if (!gproji_is_in_plane(s, mesh->origin[h ^ 1])) break;
+            in = in && gproji_is_in_plane(s, mesh->origin[h ^ 1]);
             h = gproji_rotate(mesh, h);
         } while (h != start);
-        if (h == start && gproji_is_in_plane(s, mesh->origin[h ^ 1])) return v;
+        if (in) return v;
     }
     return -1;
 }
@@ -23045,8 +23051,7 @@ GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result
         ++inner;
         twisted += faces == 4 && quads == 4 && gproji_twists_at(mesh, form->original, v);
     }
-    if (twisted > 0.9 * inner && strlen(result->message) + strlen(clause) < sizeof result->message)
-        gproji_tell(result, "%s", clause);
+    if (twisted > 0.9 * inner) gproji_tell_whole(result, clause);
 }
 
 /* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
@@ -23190,8 +23195,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     gproji_loads_at(form->mesh, loads, s->load_scale, form->scale, gproj_system_values(form->system), load);
     for (i = 0; i < count; ++i) largest = gproji_fmax(largest, fabs(load[i]));
     g = gproji_group_at(form->system, s->group);
-    for (r = 0; r < g->row_count; ++r)
-        if (g->row[r].weight > 0) worst = gproji_fmax(worst, fabs(g->row[r].phi));
+    for (r = 0; r < g->row_count; ++r) worst = gproji_fmax(worst, fabs(g->row[r].phi)); /* 0 without weight */
     part = largest > 0 ? worst / largest : 0;
     /* 2. No loads are left, or they are too small to be seen. */
     follow = (!loads->edge_density && loads->density != 0) || loads->area_load != 0 || loads->snow != 0;
@@ -23295,8 +23299,8 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     if (!known && form->solve.loop.options.nearest && !form->solve.loop.options.skip_guard &&
         form->solve.loop.iterations <= GPROJI_SAFE_MOST)
         gproji_tell(result, "; more than %d iterations may keep it whole", GPROJI_SAFE_MOST);
-    else if (!known && strlen(result->message) + strlen(help) < sizeof result->message)
-        gproji_tell(result, "%s", help);
+    else if (!known)
+        gproji_tell_whole(result, help);
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_asymptotic(form, result);
 }
 

@@ -61,4 +61,6 @@ void gprojt_inside_watch(gproj_form *form, bool set, double watched[6]) {
     }
 }
 
+void gprojt_inside_tell_whole(gproj_result *result, const char *clause) { gproji_tell_whole(result, clause); }
+
 void gprojt_inside_wear(gproj_edit *edit) { gproji_edit_owner(edit, NULL)->stamp = INT32_MAX - 2; }

@@ -46,6 +46,9 @@ double gprojt_inside_lack(const gproj_result *result);
 /* The volume with these positions above the plane z = height, times scale; its gradient is added (NULL: not). */
 double gprojt_inside_volume(const gproj_mesh *mesh, const double *position, double height, double *gradient);
 
+/* gproji_tell_whole. */
+void gprojt_inside_tell_whole(gproj_result *result, const char *clause);
+
 /* Wears an edit's marks as nearly 2^31 collapses do. */
 void gprojt_inside_wear(gproj_edit *edit);
 

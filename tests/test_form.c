@@ -1314,6 +1314,19 @@ static gproj_result gprojt_two_quads(const double fourth[3], const double fifth[
     return result;
 }
 
+/* Advice that fits but for its last byte is left out. */
+GPROJT_TEST(advice_is_whole_or_not_there) {
+    static const char advice[] = "; fix vertices";
+    size_t left;
+    for (left = sizeof advice - 1; left <= sizeof advice; ++left) { /* with the byte that ends the sentence */
+        gproj_result result;
+        memset(&result, 0, sizeof result);
+        memset(result.message, 'x', sizeof result.message - left);
+        gprojt_inside_tell_whole(&result, advice);
+        GPROJT_CHECK(strlen(result.message) == sizeof result.message - (left < sizeof advice ? left : 1));
+    }
+}
+
 /* How far off is told; not what is off by little, nor planes that would have to spread over three vertices in a line. */
 GPROJT_TEST(planes_that_meet_one_vertex) {
     static const double beside[3] = {1.2, 2, 0}, along[3] = {2, 1, 0};
@@ -1352,23 +1365,35 @@ static void gprojt_add_sheared(gprojt_soup *soup, int32_t m, int32_t n, bool spl
    need not be circular or flat, or a triangle, there is no such reason; each part of a mesh has its own. Where vertices
    are held counts, and inside what is smooth. */
 GPROJT_TEST(angles_of_circles_are_named) {
-    static const char name[] = "in a smooth mesh with this boundary the sums differ by 67 degrees, most by vertex";
+    static const char name[] = "in a smooth mesh with this boundary the sums differ by 67 degrees, most by vertex",
+                      less[] = "in a smooth mesh with this boundary the sums differ by 56 degrees, most by vertex";
     static const int32_t corner[1] = {7};
     static const double none[1] = {0};
     int k;
-    for (k = 0; k < 12; ++k) {
+    for (k = 0; k < 14; ++k) {
         gprojt_soup soup;
         gproj_mesh *mesh;
         gproj_form *form;
         gproj_solve_options options;
         gproj_result result;
         int32_t circular, planar = -1, held = -1, v;
-        bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6 || k == 8;
+        bool whole = k == 1 || k == 2, named = k == 0 || k == 3 || k == 6 || k == 8 || k == 13;
         memset(&soup, 0, sizeof soup);
         memset(&options, 0, sizeof options);
-        gprojt_add_sheared(&soup, 7, k == 1 ? 8 : 7, k == 5 || k == 8, 0);
+        gprojt_add_sheared(&soup, 7, k == 1 || k == 12 ? 8 : 7, k == 5 || k == 8, 0);
         if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 12) { /* vertex 1 is a corner of the colour of vertex 0 */
+            for (v = 0; v < soup.corner_count; ++v) {
+                int32_t *i = soup.corner + v;
+                *i = *i == 1 ? 64 : *i == 64 ? 1 : *i;
+            }
+            for (v = 0; v < 3; ++v) {
+                double x = soup.position[3 + v];
+                soup.position[3 + v] = soup.position[3 * 64 + v], soup.position[3 * 64 + v] = x;
+            }
+        }
         mesh = gprojt_mesh_of(soup);
+        for (v = 0; k == 13 && v < mesh->vertex_count; ++v) mesh->position[3 * v] -= 0.05 * mesh->position[3 * v + 1];
         if (k == 11) /* a flat square, uneven inside */
             for (v = 0; v < 64; ++v) {
                 double *p = mesh->position + 3 * v;
@@ -1389,14 +1414,15 @@ GPROJT_TEST(angles_of_circles_are_named) {
             }
             gproj_add_targets(form, count, list, to, 1);
         } else {
-            held = k == 3 || k == 11 ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
+            bool fixed = k == 3 || k == 11 || k == 12;
+            held = fixed ? gproj_add_fixed_boundary(form, 1) : gproj_add_gliding_boundary(form, 1);
         }
         if (k == 10) gproj_set_element_weights(form, planar, 1, corner, none);
         if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);
         if (k == 4) gproj_set_element_weights(form, circular, 1, corner, none);
         options.smooth = true;
         result = gproj_solve(form, k < 9 ? 60 : 2, &options);
-        GPROJT_CHECK((strstr(result.message, name) != NULL) == named);
+        GPROJT_CHECK((strstr(result.message, k < 13 ? name : less) != NULL) == named);
         GPROJT_CHECK((strstr(result.message, "chessboard") != NULL) == named);
         if (named) GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
         if (named)
@@ -1579,6 +1605,30 @@ GPROJT_TEST(carriers_in_a_plane_are_not_named) {
     gproj_mesh_destroy(mesh);
 }
 
+/* The plane of a corner takes in the vertex across the face; with edges that leave the plane it may carry its load, if
+   all of its edges are in the plane, it may not. */
+GPROJT_TEST(edges_off_the_plane_carry) {
+    static const int32_t corner[5][5] = {{0, 1, 5}, {3, 4, 9}, {15, 20, 21}, {19, 23, 24}, {0, 1, 5, 2, 10}};
+    int k;
+    for (k = 0; k < 5; ++k) {
+        gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads;
+        gproj_result result;
+        memset(&loads, 0, sizeof loads);
+        loads.snow = 1;
+        gproj_add_planarity(form, 1);
+        gprojt_add_supported(form, mesh, &loads, false);
+        gproj_add_fixed(form, k < 4 ? 3 : 5, corner[k], 1);
+        result = gproj_solve(form, 0, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
+        GPROJT_CHECK(k == 4 || !strstr(result.message, "cannot carry its load"));
+        GPROJT_CHECK(k < 4 || strstr(result.message, "in which vertex 6 cannot carry its load"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Without equilibrium the verdict names the vertex that is farthest from where it is held, in whatever order the groups
    were added. */
 GPROJT_TEST(the_farthest_holds_back_most) {
@@ -1604,8 +1654,9 @@ GPROJT_TEST(the_farthest_holds_back_most) {
         gproj_add_fixed(form, 0, NULL, 1);
         {
             static const int32_t far = 0;
-            static const double away[3] = {0, 0, 9};
+            static const double away[3] = {0, 0, 9}, length = 9;
             gproj_add_targets(form, 1, &far, away, 0); /* what has no weight does not hold back */
+            gproj_add_lengths(form, 1, &far, &length, 1e-3); /* nor what is no vertex's */
         }
         result = gproj_solve(form, 60, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED);
@@ -3268,6 +3319,7 @@ int main(void) {
     GPROJT_RUN(planes_that_spread_are_named);
     GPROJT_RUN(asymptotic_directions_are_named);
     GPROJT_RUN(sides_that_avoid_a_plane_are_named);
+    GPROJT_RUN(advice_is_whole_or_not_there);
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
     GPROJT_RUN(conflicts_at_the_limit);
@@ -3275,6 +3327,7 @@ int main(void) {
     GPROJT_RUN(planes_without_carriers_are_named);
     GPROJT_RUN(rings_that_glide_in_a_plane);
     GPROJT_RUN(carriers_in_a_plane_are_not_named);
+    GPROJT_RUN(edges_off_the_plane_carry);
     GPROJT_RUN(the_farthest_holds_back_most);
     GPROJT_RUN(refused_targets_name_no_vertex);
     GPROJT_RUN(triangles_held_are_not_named);

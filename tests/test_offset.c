@@ -232,6 +232,17 @@ GPROJT_TEST(conicality_is_measured) {
             GPROJT_CHECK(best > 0.005 && measured > 0.7 * best && measured < 1.5 * best);
         gproj_mesh_destroy(mesh);
     }
+    { /* at a boundary, where two edges have one face only: four of six faces of a pyramid */
+        gprojt_soup soup;
+        gproj_mesh *mesh;
+        memset(&soup, 0, sizeof soup);
+        gprojt_add_vertex(&soup, 0, 0, 1);
+        for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, cos(k * acos(-1.0) / 3), sin(k * acos(-1.0) / 3), 0);
+        for (k = 1; k < 5; ++k) gprojt_add_triangle(&soup, 0, k, k + 1);
+        mesh = gprojt_mesh_of(soup);
+        GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).conicality_max < 1e-12);
+        gproj_mesh_destroy(mesh);
+    }
     for (k = 3; k < 9; ++k) {
         gproj_mesh *mesh = gprojt_revolution(k, 4);
         GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).conicality_max < 1e-12);

@@ -482,7 +482,8 @@ static void gprojt_check_cover(gprojt_soup *s) {
     gprojt_soup_free(s);
 }
 
-GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces, and spirals */
+GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces, quads with a notch, and spirals */
+    static const double notched[4][2] = {{0, 0}, {2, 0}, {0.5, 0.5}, {0, 2}};
     uint64_t state = 37;
     int round;
     for (round = 0; round < 400; ++round) {
@@ -495,6 +496,14 @@ GPROJT_TEST(faces_that_are_not_convex) { /* star-shaped faces, and spirals */
             corner[i] = gprojt_add_vertex(&s, r * cos(angle), r * sin(angle), tilt * r * cos(angle));
         }
         gprojt_add_face(&s, n, corner);
+        gprojt_check_cover(&s);
+    }
+    for (round = 0; round < 4; ++round) { /* from each corner on */
+        gprojt_soup s;
+        int32_t i, corner[4];
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < 4; ++i) corner[(i + round) % 4] = gprojt_add_vertex(&s, notched[i][0], notched[i][1], 0);
+        gprojt_add_face(&s, 4, corner);
         gprojt_check_cover(&s);
     }
     for (round = 200; round <= 1360; round += 290) {

@@ -1177,7 +1177,7 @@ GPROJT_TEST(parts_without_support_are_named) {
     gproj_form_destroy(form);
     /* A part without loads, or with loads that balance, needs none: the third one is named. */
     memset(load, 0, sizeof load);
-    load[3 * 4] = 1, load[3 * 5] = -1, load[3 * 8 + 2] = -1, load[3 * 11] = 1;
+    load[3 * 4] = 1, load[3 * 5] = -1, load[3 * 11] = 1;
     loads.density = 0, loads.point_load = load, supports.count = 0;
     form = gproj_form_create(mesh, NULL);
     gproj_add_equilibrium(form, &loads, &supports, 1);
@@ -1501,10 +1501,10 @@ GPROJT_TEST(obstacles_are_named) {
 }
 
 /* What contradicts on one edge: signs, also by rows of the caller's (dense ones in the last way) and by bounds of stresses.
-   What has no weight does not, nor bounds that both signs satisfy, nor those of lengths. */
+   What has no weight does not, nor bounds that both signs satisfy, or no force at all, nor those of lengths. */
 GPROJT_TEST(contradictions_are_named) {
     int way;
-    for (way = 0; way < 11; ++way) {
+    for (way = 0; way < 13; ++way) {
         gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0);
         gproj_loads loads = gprojt_no_loads();
         gproj_form *form;
@@ -1523,7 +1523,7 @@ GPROJT_TEST(contradictions_are_named) {
         group.global = way == 10;
         term = gprojt_term(gproj_force_variable(form, edge), -1, -1);
         gproj_add_length_bounds(form, 0, NULL, 0.01, INFINITY, 1);
-        if (way != 9) gproj_add_compression(form, 1, &edge, 1);
+        if (way != 9 && way != 11) gproj_add_compression(form, 1, &edge, 1);
         if (way == 0) gproj_add_tension(form, 1, &edge, 1);
         if (way == 1 || way == 10) own = gproj_system_add_group(gproj_form_system(form), &group);
         if (way == 1 || way == 10) gproj_system_add_row(gproj_form_system(form), own, 1, &term, 0, edge);
@@ -1535,9 +1535,11 @@ GPROJT_TEST(contradictions_are_named) {
         if (way == 7) gproj_add_tension(form, 1, &inside, 1);
         if (way == 8) gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
         if (way == 9) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 1, 2, 1);
+        if (way == 11) gproj_add_tension(form, 1, &edge, 1), gproj_add_stress_bounds(form, 1, &edge, NULL, 0, 2, 1);
+        if (way == 12) gproj_add_stress_bounds(form, 1, &edge, NULL, -2, 0, 1);
         result = gproj_solve(form, 20, NULL);
         GPROJT_CHECK(result.outcome != GPROJ_CONVERGED && gproj_form_error(form)->code == GPROJ_OK);
-        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way > 8));
+        GPROJT_CHECK((strstr(result.message, "is to have both signs") != NULL) == (way < 3 || way == 9 || way == 10));
         if (strstr(result.message, "is to have both signs")) {
             char words[32];
             snprintf(words, sizeof words, "; edge %d is to have both", (int)edge);
@@ -1548,22 +1550,45 @@ GPROJT_TEST(contradictions_are_named) {
     }
 }
 
-/* Where equilibrium is not asked for, at vertices whose weight is 0, nothing is out of balance. */
+/* Edge 0 may contradict as well as any other. */
+GPROJT_TEST(the_first_edge_may_contradict) {
+    gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_supports supports = {1, NULL, NULL};
+    int32_t edge = 0, pin = mesh->vertex_count - 1;
+    loads.density = 1, supports.vertex = &pin;
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed_boundary(form, 1);
+    gproj_add_compression(form, 1, &edge, 1);
+    gproj_add_tension(form, 1, &edge, 1);
+    GPROJT_CHECK(strstr(gproj_solve(form, 0, NULL).message, "; edge 0 is to have both signs") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Where equilibrium is not asked for, at vertices whose weight is 0, nothing is out of balance, however small the loads are
+   beside the tolerance. */
 GPROJT_TEST(vertices_without_weight_carry_nothing) {
-    int on;
-    for (on = 0; on < 2; ++on) {
+    int way;
+    for (way = 0; way < 3; ++way) {
+        bool on = way == 1;
         gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 0); /* a plate */
         gproj_loads loads = gprojt_no_loads();
         double *weight = gprojt_numbers(mesh->vertex_count);
+        gproj_solve_options options;
         gproj_form *form;
         gproj_result result;
         int32_t v;
+        memset(&options, 0, sizeof options);
+        if (way == 2) options.tolerance = 1;
         loads.density = 1;
         form = gprojt_pinned_form(mesh, NULL, &loads);
         gproj_add_fixed(form, 0, NULL, 1);
         for (v = 0; v < mesh->vertex_count; ++v) weight[v] = on;
+        if (way == 2) gproj_solve(form, 0, NULL); /* what was out of balance then */
         gproj_set_element_weights(form, 0, 0, NULL, weight);
-        result = gproj_solve(form, 20, NULL);
+        result = gproj_solve(form, 20, &options);
         GPROJT_CHECK((result.outcome == GPROJ_CONVERGED) == !on);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
@@ -1587,6 +1612,15 @@ GPROJT_TEST(overturned_shapes_are_told) {
                 GPROJT_CHECK(other > 0.9 && one < 0.5 * other);
             }
         }
+}
+
+/* A plate that rises to carry has not been turned over: it would not have hung either. */
+GPROJT_TEST(rising_plates_are_not_overturned) {
+    int sign;
+    for (sign = -1; sign <= 1; sign += 2) {
+        gproj_result result = gprojt_verdict(0, false, sign, false, true);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "turned over"));
+    }
 }
 
 /* The verdict on a shape that is turned over tells how much of the loads tension and compression would have left, as
@@ -2341,6 +2375,32 @@ GPROJT_TEST(meshes_without_support) {
     }
 }
 
+/* Where all edges weigh 0 there are no loads that could have vanished, whatever their common density would be; nor without
+   any loads, where forces are balanced by the tolerance alone. */
+GPROJT_TEST(no_loads_have_not_vanished) {
+    int way;
+    for (way = 0; way < 2; ++way) {
+        gproj_mesh *mesh = gprojt_vault(QUADS, 4, 2, 0.6);
+        double *w = gprojt_numbers(mesh->edge_count);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_solve_options options;
+        gproj_form *form;
+        int32_t e;
+        memset(&options, 0, sizeof options);
+        loads.density = 1;
+        if (way == 0) loads.edge_density = w;
+        if (way == 1) loads.density = 0, options.tolerance = 2;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (e = 0; e < mesh->edge_count; ++e) w[e] = 1;
+        if (way == 1) GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK);
+        GPROJT_CHECK(gproj_solve(form, way ? 0 : 20, &options).outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK((gproj_measure_forces(form, NULL).residual > 1e-9) == (way == 1));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(w);
+    }
+}
+
 /* Loads far from 1 are found forces for; those whose squares overflow are refused, by the solve as well. */
 GPROJT_TEST(loads_of_any_size) {
     static const double size[] = {1, 1e-100, 1e100, 1e200};
@@ -2423,8 +2483,10 @@ int main(void) {
     GPROJT_RUN(imbalance_is_a_proof);
     GPROJT_RUN(obstacles_are_named);
     GPROJT_RUN(contradictions_are_named);
+    GPROJT_RUN(the_first_edge_may_contradict);
     GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
+    GPROJT_RUN(rising_plates_are_not_overturned);
     GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
     GPROJT_RUN(weights_switch_groups_off_and_on);
@@ -2436,6 +2498,7 @@ int main(void) {
     GPROJT_RUN(a_point_is_no_equilibrium);
     GPROJT_RUN(huge_forces_are_no_equilibrium);
     GPROJT_RUN(meshes_without_support);
+    GPROJT_RUN(no_loads_have_not_vanished);
     GPROJT_RUN(loads_of_any_size);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
