@@ -91,6 +91,8 @@ expect 2 "must end in .obj, .off, .stl or .ply" grid.obj -o new.fbx --planar
 expect 2 "did you mean --planar" grid.obj -o new.obj --plannar
 expect 2 "did you mean --planar" grid.obj -o new.obj -planar
 expect 2 "did you mean --fairness" grid.obj -o new.obj --fair 0.2
+expect 2 "did you mean --circular" grid.obj -o new.obj --circle
+expect 2 "no option --sphere; --help lists them" grid.obj -o new.obj --sphere
 expect 2 "did you mean --tolerance" grid.obj -o new.obj --planar --tolerence=1e-9
 for levels in 0 15 1.5 2,lop ,loop x; do
     expect 2 "expected a whole number from 1 to 14" grid.obj -o new.obj --planar --subdivide $levels

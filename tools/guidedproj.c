@@ -1913,6 +1913,7 @@ static int similar_option(const char *name, size_t size) {
         const char *known = options[i].name;
         int distance = edit_distance(name, size, known);
         if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
+        if (size >= 5 && strncmp(name, known, 4) == 0 && distance > 2) distance = 2; /* another ending */
         if (distance < least) best = i, least = distance;
     }
     return best;
@@ -1928,7 +1929,8 @@ static int find_option(const char *name) {
 /* `word` is the whole argument, `name` the option in it. */
 static bool fail_unknown(tool *t, const char *word, const char *name, size_t size) {
     int best = similar_option(name, size);
-    if (best < 0) return fail(t, EXIT_USAGE, "there is no option %.*s", (int)(name + size - word), word);
+    if (best < 0)
+        return fail(t, EXIT_USAGE, "there is no option %.*s; --help lists them", (int)(name + size - word), word);
     return fail(t, EXIT_USAGE, "there is no option %.*s; did you mean --%s?", (int)(name + size - word), word,
                 options[best].name);
 }
