@@ -8076,12 +8076,11 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     if (count > GPROJI_VARIABLES_MAX - s->variable_count)
         return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                                        "the system would have more than %d variables", (int32_t)GPROJI_VARIABLES_MAX));
-    for (i = 0; values && i < count; ++i) {
-        if (gproji_is_finite(values[i])) continue;
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
-                    "the start value of variable %d is not a finite number", s->variable_count + i);
-        return -1;
-    }
+    for (i = 0; values && i < count; ++i)
+        if (!gproji_is_finite(values[i]))
+            return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
+                                           "the start value of variable %d is not a finite number",
+                                           s->variable_count + i));
     first = s->variable_count;
     if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count))
         return gproji_none(gproji_fail_memory(&s->error));
@@ -8271,12 +8270,12 @@ GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t te
            gproji_local_count(g) + locals <= g->capacity.local && gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
 }
 
-/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together; false. */
-GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
-    gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE, g ? (int64_t)(g - s->group) : -1,
-                g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
-                g ? g->name : "");
-    return false;
+/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together. */
+GPROJI_INTERNAL gproj_code gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
+    return gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE,
+                       g ? (int64_t)(g - s->group) : -1,
+                       g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
+                       g ? g->name : "");
 }
 
 /* Grows the arrays for further rows, terms and locals. */
@@ -8297,7 +8296,7 @@ GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
         locals > GPROJI_TERMS_MAX - gproji_local_count(g))
-        return gproji_refuse_rows(s, g);
+        return gproji_refuse_rows(s, g) == GPROJ_OK;
     if (!gproji_reserve_rows(s, g, rows, terms, locals)) gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
@@ -8436,7 +8435,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     size_t count = 0;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
-    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g) == GPROJ_OK;
     own = (gproj_term *)gproji_take(&s->heap, count, sizeof *own);
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
@@ -8724,10 +8723,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_whole(gproj_system *s) {
         rows += (size_t)s->group[i].row_count;
         entries += gproji_local_count(&s->group[i]);
     }
-    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) {
-        gproji_refuse_rows(s, NULL);
-        return GPROJ_ERROR_SIZE;
-    }
+    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     memset(&in, 0, sizeof in);
     gproji_pool_start(&in.pool, &s->heap);
     in.node_count = s->nodes.count;
@@ -8815,7 +8811,7 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
         row->term = known->term;
         return true;
     }
-    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g) == GPROJ_OK;
     g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &g->capacity.term, wanted, sizeof *g->term);
     if (g->capacity.term < wanted) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
@@ -9515,10 +9511,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_elements(gproj_system *s) {
     gproji_incidence in;
     uint32_t k;
     int32_t v, e;
-    if ((uint64_t)links > GPROJI_TERMS_MAX) {
-        gproji_refuse_rows(s, NULL);
-        return GPROJ_ERROR_SIZE;
-    }
+    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     memset(&in, 0, sizeof in);
     gproji_pool_start(&in.pool, &s->heap);
     in.node_count = d->elements;
@@ -10573,7 +10566,7 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     loop->time.lap = now;
 }
 
-/* Is this not one of the wishes that the library adds to guide a solve? */
+/* Is this a wish of the caller's, or for the release of a drag? The others the library adds to guide a solve. */
 GPROJI_INTERNAL bool gproji_is_callers_wish(const gproji_group *g) {
     return g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE;
 }
@@ -10590,7 +10583,7 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
     return guiding ? 0 : g->schedule.last;
 }
 
-/* Is this a caller's wish that only guides, and ends before the last iteration? */
+/* Is this such a wish that ends before the last iteration? */
 GPROJI_INTERNAL bool gproji_only_guides(const gproji_loop *loop, const gproji_group *g) {
     return gproji_is_callers_wish(g) && gproji_last_iteration(loop, g) < loop->iterations;
 }
@@ -10899,11 +10892,10 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
     if (gproji_merit_slope(m, high) <= 0) return high;
     for (i = 0; i < 60; ++i) {
         double middle = low + (high - low) / 2;
-        if (gproji_merit_slope(m, middle) < 0) {
+        if (gproji_merit_slope(m, middle) < 0)
             low = middle;
-        } else {
+        else
             high = middle;
-        }
     }
     return low;
 }
@@ -11562,12 +11554,10 @@ GPROJI_INTERNAL gproj_result gproji_failed_result(const gproj_error *error) {
 /* Refuses start values that are not finite: the caller may have written them. */
 GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
     int32_t v;
-    for (v = 0; v < s->variable_count; ++v) {
-        if (gproji_is_finite(s->x[v])) continue;
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, v, "solve: variable %d is not a finite number",
-                    v);
-        return false;
-    }
+    for (v = 0; v < s->variable_count; ++v)
+        if (!gproji_is_finite(s->x[v]))
+            return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, v,
+                               "solve: variable %d is not a finite number", v) == GPROJ_OK;
     return true;
 }
 
@@ -21355,33 +21345,30 @@ GPROJI_INTERNAL gproj_code gproji_check_equilibrium(gproj_form *form, const gpro
         return gproji_refuse(&form->error, "equilibrium: the supports are missing, or their list is");
     if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex))
         return form->error.code;
-    for (v = 0; supports->slides && v < count; ++v) {
-        if (supports->slides[v] <= GPROJI_AXES) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
-                           "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
-                           (int32_t)supports->slides[v]);
-    }
+    for (v = 0; supports->slides && v < count; ++v)
+        if (supports->slides[v] > GPROJI_AXES)
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
+                               "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z",
+                               v, (int32_t)supports->slides[v]);
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
         !gproji_is_finite(loads->snow))
         return gproji_refuse(&form->error,
                              "equilibrium: there are no loads, or density, area load or snow is not a finite number");
-    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) {
-        if (gproji_is_finite(loads->edge_density[e])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                           "equilibrium: the density of edge %d is not a finite number", e);
-    }
-    for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v) {
-        if (gproji_is_finite(loads->point_load[v])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
-                           "equilibrium: the load on vertex %d is not a finite number", v / 3);
-    }
+    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e)
+        if (!gproji_is_finite(loads->edge_density[e]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "equilibrium: the density of edge %d is not a finite number", e);
+    for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v)
+        if (!gproji_is_finite(loads->point_load[v]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
+                               "equilibrium: the load on vertex %d is not a finite number", v / 3);
     for (v = 0; loads->point_load && v < form->mesh->vertex_count; ++v) {
         const double *load = loads->point_load + 3 * (size_t)v;
         if (form->mesh->vertex_halfedge[v] >= 0 || (load[0] == 0 && load[1] == 0 && load[2] == 0)) continue;
         for (k = 0; k < count && supports->vertex[k] != v; ++k) continue;
-        if (k < count) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
-                           "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
+        if (k == count)
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
+                               "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
     }
     return GPROJ_OK;
 }
@@ -21566,13 +21553,12 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
         !gproji_take_list(form, "stress bounds", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (!gproji_bounds_are_valid(form, "stress bounds", min, max)) return -1;
-    for (k = 0; sections && k < count; ++k) {
-        if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
-                    "stress bounds: edge %d would have the cross-section %g, which is not > 0 and finite",
-                    edges ? edges[k] : k, sections[k]);
-        return -1;
-    }
+    for (k = 0; sections && k < count; ++k)
+        if (!(sections[k] > 0) || !gproji_is_finite(sections[k]))
+            return gproji_none(
+                gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
+                            "stress bounds: edge %d would have the cross-section %g, which is not > 0 and finite",
+                            edges ? edges[k] : k, sections[k]));
     part = gproji_open_part(form, &gproji_stress_rule, 2 * count, weight);
     if (!part) return -1;
     part->given[0] = min;
@@ -21994,9 +21980,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     if (code) return code;
     s = form->statics;
     x = gproj_system_values(form->system);
-    for (e = 0; !densities && e < form->mesh->edge_count; ++e)
-        if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) {
+        for (e = 0; e < form->mesh->edge_count; ++e)
+            if (s->force[e] >= 0) x[s->force[e]] = 0;
         s->started = form->solve.on;
         gproji_set_changed(form->system, true);
         return GPROJ_OK;
@@ -22500,17 +22486,16 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
     int32_t f, h, c, e;
     for (f = 0; part && f < mesh->face_count; ++f) {
         const double *size = gproji_corners_of(part)->size;
-        double m[3], area[3], now, had;
-        gproji_corner_normal(form, x, before, f, m);
+        double is[3], was[3], area[3], now, had;
+        gproji_corner_normal(form, x, before, f, is);
+        gproji_corner_normal(form, before, before, f, was);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             gproji_corner_area(mesh, x, h, area);
-            now = gproji_dot3(area, m);
+            now = gproji_dot3(area, is);
             if (!(size[h] > 0) || now >= gproji_corner_kept * size[h]) continue;
             gproji_corner_area(mesh, before, h, area);
-            gproji_corner_normal(form, before, before, f, m);
-            had = gproji_dot3(area, m);
+            had = gproji_dot3(area, was);
             if (had > 0 && now < gproji_corner_kept * had) return true;
-            gproji_corner_normal(form, x, before, f, m);
         }
     }
     for (e = 0; part && e < mesh->edge_count; ++e) {
@@ -22695,38 +22680,32 @@ enum {
     GPROJI_HELD_MOST = 64 /* vertices of a face that are looked at */
 };
 
-/* Writes the unit normal of the area of a fan of points about the origin. False if the area is small beside the
-   distances: rounding would turn the normal of points along a line. */
-GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], double normal[3]) {
-    double squares = 0, area[3];
-    int32_t k;
-    gproji_copy3(gproji_zero, normal);
-    for (k = 1; k < count; ++k) {
-        gproji_cross3(offset[k - 1], offset[k], area);
-        gproji_add_scaled3(1, area, normal);
-        squares += gproji_dot3(offset[k], offset[k]);
-    }
-    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
+/* Points of a face, seen from the first one. */
+typedef struct gproji_fan {
+    const double *first;
+    double offset[GPROJI_HELD_MOST][3];
+    int32_t count;
+} gproji_fan;
+
+GPROJI_INTERNAL void gproji_add_to_fan(gproji_fan *fan, const double *point) {
+    if (fan->count == GPROJI_HELD_MOST) return;
+    if (fan->count == 0) fan->first = point;
+    gproji_sub3(point, fan->first, fan->offset[fan->count++]);
 }
 
-/* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
-   fan; *count: how many there are. 0 if they lie along a line. */
-GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const int32_t *kept, const double *value, int32_t face,
-                                        int32_t *count) {
-    double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
-    const double *first = NULL;
-    int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
-    for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
-        size_t v = 3 * (size_t)mesh->origin[h];
-        if (kept[mesh->origin[h]] <= 0) continue;
-        if (!first) first = value + v;
-        gproji_sub3(value + v, first, offset[held_count++]);
+/* Writes the unit normal of the fan's area. False with fewer than three points, or if the area is small beside the
+   distances: rounding would turn the normal of points along a line. */
+GPROJI_INTERNAL bool gproji_fan_normal(const gproji_fan *fan, double normal[3]) {
+    double squares = 0, area[3];
+    int32_t k;
+    if (fan->count < 3) return false;
+    gproji_copy3(gproji_zero, normal);
+    for (k = 1; k < fan->count; ++k) {
+        gproji_cross3(fan->offset[k - 1], fan->offset[k], area);
+        gproji_add_scaled3(1, area, normal);
+        squares += gproji_dot3(fan->offset[k], fan->offset[k]);
     }
-    *count = held_count;
-    if (held_count < 4 || !gproji_fan_normal(held_count, offset, normal)) return 0;
-    for (k = 0; k < held_count; ++k) mean += gproji_dot3(normal, offset[k]) / held_count;
-    for (k = 0; k < held_count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, offset[k]) - mean));
-    return most;
+    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
 }
 
 /* Planes spread. A flat quad with three corners in a plane, not along a line, lies in that plane. So the plane of a
@@ -22759,6 +22738,23 @@ GPROJI_INTERNAL bool gproji_stays(const gproji_spread *s, int32_t v) { return s-
 /* The place of a vertex: that at which it is held, or the one at the beginning. */
 GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v) {
     return (gproji_stays(s, v) ? s->value : s->form->original) + 3 * (size_t)v;
+}
+
+/* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
+   fan; *count: how many there are. 0 if they lie along a line. */
+GPROJI_INTERNAL double gproji_held_bend(const gproji_spread *s, int32_t face, int32_t *count) {
+    const gproj_mesh *mesh = s->form->mesh;
+    gproji_fan fan;
+    double normal[3], mean = 0, most = 0;
+    int32_t h = mesh->face_halfedge[face], c, k;
+    fan.count = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        if (gproji_stays(s, mesh->origin[h])) gproji_add_to_fan(&fan, gproji_place_of(s, mesh->origin[h]));
+    *count = fan.count;
+    if (fan.count < 4 || !gproji_fan_normal(&fan, normal)) return 0;
+    for (k = 0; k < fan.count; ++k) mean += gproji_dot3(normal, fan.offset[k]) / fan.count;
+    for (k = 0; k < fan.count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, fan.offset[k]) - mean));
+    return most;
 }
 
 /* The height of a vertex above the plane. */
@@ -22816,15 +22812,13 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
 /* Takes the other vertices of a face with three corners in the plane into it. */
 GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
-    double offset[GPROJI_HELD_MOST][3], normal[3];
-    const double *first = NULL;
-    int32_t h = mesh->face_halfedge[face], in = 0, c;
-    for (c = 0; c < mesh->face_degree[face] && in < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
-        if (!gproji_is_in_plane(s, mesh->origin[h])) continue;
-        if (!first) first = gproji_place_of(s, mesh->origin[h]);
-        gproji_sub3(gproji_place_of(s, mesh->origin[h]), first, offset[in++]);
-    }
-    if (in < 3 || !gproji_fan_normal(in, offset, normal)) return;
+    gproji_fan fan;
+    double normal[3];
+    int32_t h = mesh->face_halfedge[face], c;
+    fan.count = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        if (gproji_is_in_plane(s, mesh->origin[h])) gproji_add_to_fan(&fan, gproji_place_of(s, mesh->origin[h]));
+    if (!gproji_fan_normal(&fan, normal)) return;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
         double off;
@@ -22844,17 +22838,17 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
    held, and spreads it as far as it goes. */
 GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
-    double offset[GPROJI_HELD_MOST][3];
-    int32_t h = mesh->face_halfedge[face], kept = 0, held = 0, c, head;
+    gproji_fan fan;
+    int32_t h = mesh->face_halfedge[face], held = 0, c, head;
+    fan.count = 0;
     s->count = 0, s->vertex = -1, s->off = 0;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) held += gproji_stays(s, mesh->origin[h]);
-    for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
-        if (s->kept[v] == 0 || (s->kept[v] < 0 && held >= 3)) continue;
-        if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
-        gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
+        if (s->kept[v] > 0 || (s->kept[v] < 0 && held < 3)) gproji_add_to_fan(&fan, gproji_place_of(s, v));
     }
-    if (kept < 3 || s->plane == GPROJI_PLANES_MOST || !gproji_fan_normal(kept, offset, s->normal)) return;
+    if (s->plane == GPROJI_PLANES_MOST || !gproji_fan_normal(&fan, s->normal)) return;
+    gproji_copy3(fan.first, s->point);
     s->plane++;
     gproji_spread_to(s, face);
     for (head = 0; head < s->count; ++head)
@@ -23042,26 +23036,21 @@ GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result
     if (twisted > 0.9 * inner) gproji_tell_whole(result, clause);
 }
 
-/* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
-   vertices are held; else a plane that spreads, or angles, if no face has been let go. Returns true in the first case
-   alone: no other attempt can help. */
-GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
-    double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    double *value = gproji_spare(form->system, 1), worst = 0;
-    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
-    int32_t r, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, kept, value);
-    bool planar = gproji_is_on(form, form->planarity), whole = planar;
-    const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
-    for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
+/* Names the flat face whose held vertices are farthest from a plane, by 1e-9 or by what explains the residual. Returns
+   whether there is one; *whole: no face has been let go. */
+GPROJI_INTERNAL bool gproji_tell_bent(const gproji_spread *s, gproj_result *result, bool *whole) {
+    const gproji_group *g = gproji_group_at(s->form->system, s->form->planarity);
+    double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual)), worst = 0;
+    int32_t r, bent = 0, face = -1, corners = 0, previous = -1;
+    for (r = 0, *whole = true; r < g->row_count; ++r) { /* each face once */
         int32_t count, f = g->row[r].element;
         double bend;
-        whole = whole && g->row[r].weight > 0;
+        *whole = *whole && g->row[r].weight > 0;
         if (!(g->row[r].weight > 0) || f == previous) continue;
         previous = f;
-        bend = gproji_held_bend(form->mesh, kept, value, f, &count);
-        if (!(bend > noticeable)) continue;
-        ++bent;
-        if (bend > worst) worst = bend, face = f, corners = count;
+        bend = gproji_held_bend(s, f, &count);
+        bent += bend > noticeable;
+        if (bend > noticeable && bend > worst) worst = bend, face = f, corners = count;
     }
     if (bent > 0)
         gproji_tell(result,
@@ -23069,17 +23058,27 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
                     "let one of them go%s",
                     face, corners, worst, bent > 1 ? ", and others likewise" : "",
                     worst < 1e-6 ? ", or set a larger tolerance" : "");
-    else if (all == vertices)
-        gproji_tell(result, "; all vertices are fixed: let some of them go");
-    else if (whole) {
-        gproji_spread spread;
-        memset(&spread, 0, sizeof spread);
-        spread.form = form, spread.kept = kept, spread.value = value;
-        spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
-        memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
-        if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
-    }
     return bent > 0;
+}
+
+/* Says why faces cannot be flat: the held vertices of one leave no plane; or all vertices are held; else a plane that
+   spreads, or angles, if no face has been let go. Returns true in the first case alone: no other attempt can help. */
+GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
+    double *value = gproji_spare(form->system, 1);
+    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
+    int32_t held = gproji_find_held(form, kept, value);
+    bool whole = false;
+    gproji_spread spread;
+    memset(&spread, 0, sizeof spread);
+    spread.form = form, spread.kept = kept, spread.value = value;
+    spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
+    memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
+    if (gproji_is_on(form, form->planarity) && gproji_tell_bent(&spread, result, &whole)) return true;
+    if (held == vertices)
+        gproji_tell(result, "; all vertices are fixed: let some of them go");
+    else if (whole && !gproji_tell_planes(&spread, result))
+        gproji_tell_angles(&spread, result);
+    return false;
 }
 
 /* A vertex of a part of the mesh that has loads and no support; -1: none. */
@@ -23524,8 +23523,8 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. If the nearest mesh is asked for,
-   closeness defines "near"; later attempts have what their beginning says; `skip`: neither, and what an earlier solve has
-   left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
+   closeness defines "near"; later attempts have what their beginning says; `skip`: neither, and what an earlier solve
+   has left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
@@ -24405,15 +24404,14 @@ GPROJI_INTERNAL double gproji_follow_handles(gproj_drag *drag, double most, doub
 
 /* Can handles move? Else drag->error says why not. */
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
-    if (!gproji_form_ready(drag->form)) {
+    if (!gproji_form_ready(drag->form))
         gproji_pass_on(&drag->error, gproj_form_error(drag->form));
-    } else if (drag->released) {
+    else if (drag->released)
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: the handles have been released; end or cancel it");
-    } else if (gproji_structure_of(drag->form->system) != drag->structure) {
+    else if (gproji_structure_of(drag->form->system) != drag->structure)
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
-    }
     return drag->error.code == GPROJ_OK;
 }
 
