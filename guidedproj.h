@@ -8076,12 +8076,11 @@ GPROJ_API int32_t gproj_system_add_variables(gproj_system *s, int32_t count, int
     if (count > GPROJI_VARIABLES_MAX - s->variable_count)
         return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1,
                                        "the system would have more than %d variables", (int32_t)GPROJI_VARIABLES_MAX));
-    for (i = 0; values && i < count; ++i) {
-        if (gproji_is_finite(values[i])) continue;
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
-                    "the start value of variable %d is not a finite number", s->variable_count + i);
-        return -1;
-    }
+    for (i = 0; values && i < count; ++i)
+        if (!gproji_is_finite(values[i]))
+            return gproji_none(gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, s->variable_count + i,
+                                           "the start value of variable %d is not a finite number",
+                                           s->variable_count + i));
     first = s->variable_count;
     if ((size_t)first + (size_t)count > s->capacity.auxiliary && !gproji_reserve_variables(s, (size_t)count))
         return gproji_none(gproji_fail_memory(&s->error));
@@ -8271,12 +8270,12 @@ GPROJI_INLINE bool gproji_has_room(const gproji_group *g, size_t rows, size_t te
            gproji_local_count(g) + locals <= g->capacity.local && gproji_local_count(g) + locals <= GPROJI_TERMS_MAX;
 }
 
-/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together; false. */
-GPROJI_INTERNAL bool gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
-    gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE, g ? (int64_t)(g - s->group) : -1,
-                g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
-                g ? g->name : "");
-    return false;
+/* Refuses what 32-bit numbers cannot count, in a group or (NULL) in all together. */
+GPROJI_INTERNAL gproj_code gproji_refuse_rows(gproj_system *s, const gproji_group *g) {
+    return gproji_fail(&s->error, GPROJ_ERROR_SIZE, g ? GPROJ_PLACE_GROUP : GPROJ_PLACE_NONE,
+                       g ? (int64_t)(g - s->group) : -1,
+                       g ? "group '%s' has too many rows or terms" : "the groups have too many rows or terms together",
+                       g ? g->name : "");
 }
 
 /* Grows the arrays for further rows, terms and locals. */
@@ -8297,7 +8296,7 @@ GPROJI_INTERNAL bool gproji_reserve_rows(gproj_system *s, gproji_group *g, size_
 GPROJI_INTERNAL bool gproji_make_room(gproj_system *s, gproji_group *g, size_t rows, size_t terms, size_t locals) {
     if (rows > (size_t)(GPROJI_ROWS_MAX - g->row_count) || terms > GPROJI_TERMS_MAX - g->term_count ||
         locals > GPROJI_TERMS_MAX - gproji_local_count(g))
-        return gproji_refuse_rows(s, g);
+        return gproji_refuse_rows(s, g) == GPROJ_OK;
     if (!gproji_reserve_rows(s, g, rows, terms, locals)) gproji_fail_memory(&s->error);
     return s->error.code == GPROJ_OK;
 }
@@ -8436,7 +8435,7 @@ GPROJI_INTERNAL bool gproji_own_terms(gproj_system *s, gproji_group *g) {
     size_t count = 0;
     int32_t r;
     for (r = 0; r < g->row_count; ++r) count += g->row[r].terms;
-    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    if (count > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g) == GPROJ_OK;
     own = (gproj_term *)gproji_take(&s->heap, count, sizeof *own);
     if (!own) return false;
     for (r = 0, count = 0; r < g->row_count; ++r) {
@@ -8724,10 +8723,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_whole(gproj_system *s) {
         rows += (size_t)s->group[i].row_count;
         entries += gproji_local_count(&s->group[i]);
     }
-    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) {
-        gproji_refuse_rows(s, NULL);
-        return GPROJ_ERROR_SIZE;
-    }
+    if (rows > GPROJI_TERMS_MAX || entries > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     memset(&in, 0, sizeof in);
     gproji_pool_start(&in.pool, &s->heap);
     in.node_count = s->nodes.count;
@@ -8815,7 +8811,7 @@ GPROJI_INTERNAL bool gproji_copy_terms(gproj_system *s, gproji_group *g, gproji_
         row->term = known->term;
         return true;
     }
-    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g);
+    if (wanted > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, g) == GPROJ_OK;
     g->term = (gproj_term *)gproji_grow(&s->heap, g->term, &g->capacity.term, wanted, sizeof *g->term);
     if (g->capacity.term < wanted) return false;
     memcpy(g->term + g->term_count, g->term + row->source, row->terms * sizeof *g->term);
@@ -9515,10 +9511,7 @@ GPROJI_INTERNAL gproj_code gproji_analyse_elements(gproj_system *s) {
     gproji_incidence in;
     uint32_t k;
     int32_t v, e;
-    if ((uint64_t)links > GPROJI_TERMS_MAX) {
-        gproji_refuse_rows(s, NULL);
-        return GPROJ_ERROR_SIZE;
-    }
+    if ((uint64_t)links > GPROJI_TERMS_MAX) return gproji_refuse_rows(s, NULL);
     memset(&in, 0, sizeof in);
     gproji_pool_start(&in.pool, &s->heap);
     in.node_count = d->elements;
@@ -10511,8 +10504,15 @@ typedef struct gproji_slides {
 typedef struct gproji_wishing {
     int32_t last;  /* the last iteration for wishes whose schedule names none; 0: they stay */
     double fading; /* > 0: those that would act to the end have this part of their weights, until then */
-    bool left_out; /* those that end have no weight at all */
 } gproji_wishing;
+
+/* An owner may solve in several attempts: how this one differs, and what it leaves to be known for the next one. */
+typedef struct gproji_trying {
+    int32_t earlier; /* iterations of earlier attempts */
+    bool left_out;   /* callers' wishes that end have no weight at all */
+    bool steered;    /* the callback has changed what is asked for */
+    bool futile;     /* something that is asked for can never hold */
+} gproji_trying;
 
 /* A solve under way; it lasts from run to run if the solve is cut into frames (gproji_run). */
 typedef struct gproji_loop {
@@ -10530,7 +10530,7 @@ typedef struct gproji_loop {
     gproj_result result;
     gproj_iteration iteration;
     gproji_standing standing;
-    int32_t earlier;      /* iterations of earlier attempts */
+    gproji_trying attempt;
     gproji_standing best; /* as a measure of progress */
     int32_t waited;       /* iterations since then */
     double epsilon_least; /* lower end of the eps that follows the residual; less if steps fall short */
@@ -10538,7 +10538,6 @@ typedef struct gproji_loop {
     bool stiff; /* metric groups have a weight in this solve */
     gproji_trust trust;
     gproji_slides slides;
-    bool steered; /* the callback has changed what is asked for */
     bool hopeful; /* the verdict: more iterations may help, unless a reason against it is found */
 } gproji_loop;
 
@@ -10567,10 +10566,14 @@ GPROJI_INTERNAL void gproji_lap(gproji_loop *loop, gproj_phase phase) {
     loop->time.lap = now;
 }
 
+/* Is this a wish of the caller's, or for the release of a drag? The others the library adds to guide a solve. */
+GPROJI_INTERNAL bool gproji_is_callers_wish(const gproji_group *g) {
+    return g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE;
+}
+
 /* Is this a wish that has to end, although its schedule does not say so? */
 GPROJI_INTERNAL bool gproji_is_fading(const gproji_loop *loop, const gproji_group *g) {
-    return loop->wishes.fading > 0 && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE &&
-           g->schedule.last >= loop->iterations;
+    return loop->wishes.fading > 0 && gproji_is_callers_wish(g) && g->schedule.last >= loop->iterations;
 }
 
 /* The last iteration in which a group has a weight; 0: it keeps one for ever, and is no wish. */
@@ -10578,6 +10581,11 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
     bool guiding = g->schedule.last == GPROJ_LAST_GUIDING;
     if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wishes.last;
     return guiding ? 0 : g->schedule.last;
+}
+
+/* Is this such a wish that ends before the last iteration? */
+GPROJI_INTERNAL bool gproji_only_guides(const gproji_loop *loop, const gproji_group *g) {
+    return gproji_is_callers_wish(g) && gproji_last_iteration(loop, g) < loop->iterations;
 }
 
 /* The weight of a group in iteration n: here wishes fade. */
@@ -10589,7 +10597,7 @@ GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_gr
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
     if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
-    if (last < loop->iterations && loop->wishes.left_out && g->kind == GPROJ_WISH && g->role < GPROJI_GUIDE) return 0;
+    if (loop->attempt.left_out && gproji_only_guides(loop, g)) return 0;
     return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
@@ -10884,11 +10892,10 @@ GPROJI_INTERNAL double gproji_minimise_merit(const gproji_course *m, double low,
     if (gproji_merit_slope(m, high) <= 0) return high;
     for (i = 0; i < 60; ++i) {
         double middle = low + (high - low) / 2;
-        if (gproji_merit_slope(m, middle) < 0) {
+        if (gproji_merit_slope(m, middle) < 0)
             low = middle;
-        } else {
+        else
             high = middle;
-        }
     }
     return low;
 }
@@ -11265,7 +11272,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
 /* Books iteration n and calls the caller's function, for which no phase is charged. False: stop. */
 GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
     bool go_on = true, changed = loop->system->changed;
-    loop->iteration.number = loop->earlier + n;
+    loop->iteration.number = loop->attempt.earlier + n;
     loop->iteration.residual = loop->standing.residual;
     loop->iteration.merit = loop->standing.merit;
     loop->iteration.energy = loop->standing.energy;
@@ -11275,7 +11282,7 @@ GPROJI_INTERNAL bool gproji_report_iteration(gproji_loop *loop, int32_t n) {
     if (loop->options.on_iteration) {
         loop->system->changed = false;
         go_on = loop->options.on_iteration(loop->options.user, loop->system, &loop->iteration);
-        loop->steered = loop->steered || loop->system->changed;
+        loop->attempt.steered = loop->attempt.steered || loop->system->changed;
         loop->system->changed = loop->system->changed || changed;
     }
     loop->time.lap = gproji_now(loop->system);
@@ -11370,7 +11377,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
             double residual = loop->standing.residual;
             bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
-            if (creeps && loop->earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
+            if (creeps && loop->attempt.earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
             loop->watch.fallen = residual, loop->watch.seen = loop->result.iterations;
         }
         /* 1. Opens iteration n: activates rows of the guard, sets the weights, linearises again if a group comes back,
@@ -11503,7 +11510,7 @@ GPROJI_INTERNAL void gproji_write_verdict(gproji_loop *loop) {
     gproj_result *r = &loop->result;
     const gproji_standing *standing = &loop->standing;
     const gproji_group *g = standing->group >= 0 ? &loop->system->group[standing->group] : NULL;
-    int32_t iterations = loop->earlier + r->iterations;
+    int32_t iterations = loop->attempt.earlier + r->iterations;
     const char *plural = iterations == 1 ? "" : "s", *ending = "";
     r->tolerance = loop->tolerance;
     r->residual = standing->residual;
@@ -11547,12 +11554,10 @@ GPROJI_INTERNAL gproj_result gproji_failed_result(const gproj_error *error) {
 /* Refuses start values that are not finite: the caller may have written them. */
 GPROJI_INTERNAL bool gproji_values_are_valid(gproj_system *s) {
     int32_t v;
-    for (v = 0; v < s->variable_count; ++v) {
-        if (gproji_is_finite(s->x[v])) continue;
-        gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, v, "solve: variable %d is not a finite number",
-                    v);
-        return false;
-    }
+    for (v = 0; v < s->variable_count; ++v)
+        if (!gproji_is_finite(s->x[v]))
+            return gproji_fail(&s->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VARIABLE, v,
+                               "solve: variable %d is not a finite number", v) == GPROJ_OK;
     return true;
 }
 
@@ -12317,7 +12322,7 @@ GPROJI_INTERNAL gproji_passing gproji_pass_loop(gproji_stream *stream, gproj_sys
     gproji_pass_integer(stream, &loop->watch.seen, 0, INT32_MAX / 2);
     gproji_pass_integer(stream, &loop->watch.yield_at, 0, INT32_MAX);
     gproji_pass_integer(stream, &s->progress.unguided, 0, INT32_MAX / 2);
-    gproji_pass_integer(stream, &loop->earlier, 0, INT32_MAX / 2);
+    gproji_pass_integer(stream, &loop->attempt.earlier, 0, INT32_MAX / 2);
     gproji_pass_double(stream, &loop->wishes.fading, 0, DBL_MAX);
     gproji_pass_bool(stream, &loop->unseen);
     passing = nearest && begun ? GPROJI_PASS_NEAREST : GPROJI_PASS_SOLVE;
@@ -12688,6 +12693,18 @@ GPROJI_INLINE int32_t gproji_corner_halfedge(const gproji_mesh_work *work, int32
 
 /* The outgoing half-edge after h around the same vertex, counter-clockwise. */
 GPROJI_INLINE int32_t gproji_rotate(const gproj_mesh *mesh, int32_t h) { return mesh->prev[h] ^ 1; }
+
+/* For loops over the half-edges that leave a vertex, from vertex_halfedge on: the one after h, counter-clockwise (left)
+   or clockwise; -1 behind the last one. */
+GPROJI_INLINE int32_t gproji_turn_left(const gproj_mesh *mesh, int32_t h) {
+    h = gproji_rotate(mesh, h);
+    return h == mesh->vertex_halfedge[mesh->origin[h]] ? -1 : h;
+}
+
+GPROJI_INLINE int32_t gproji_turn_right(const gproj_mesh *mesh, int32_t h) {
+    h = mesh->next[mesh->twin[h]];
+    return h == mesh->vertex_halfedge[mesh->origin[h]] ? -1 : h;
+}
 
 /* The position of a half-edge's origin; with other positions than the mesh's, too. */
 GPROJI_INLINE const double *gproji_corner_at(const gproj_mesh *mesh, const double *position, int32_t halfedge) {
@@ -18907,7 +18924,6 @@ typedef struct gproji_unknowns {
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
-    bool futile;   /* and something that it was asked for can never hold */
     gproji_loop loop;
     int64_t structure; /* of the system at the beginning: gproji_structure_of */
 } gproji_solve;
@@ -19228,6 +19244,24 @@ GPROJI_INTERNAL void gproji_set_products(gproj_term *term, int32_t count, const 
             gproji_set_term(term++, first[product[p].i] + k, first[product[p].j] + k, scale * product[p].a);
 }
 
+/* Sets six terms for n'(a x b): the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... of points with the
+   variables from a and b on. The coefficients n / size come from gproji_weigh_cross. */
+GPROJI_INTERNAL void gproji_set_cross(gproj_term *term, int32_t a, int32_t b) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        gproji_set_term(&term[2 * k], a + k, b + (k + 1) % 3, 0);
+        gproji_set_term(&term[2 * k + 1], a + (k + 1) % 3, b + k, 0);
+    }
+}
+
+GPROJI_INTERNAL void gproji_weigh_cross(gproj_term *term, const double n[3], double size) {
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        term[2 * k].a = n[(k + 2) % 3] / size;
+        term[2 * k + 1].a = -term[2 * k].a;
+    }
+}
+
 /* Makes room for all that a builder is about to add: a group that grows row by row is moved many times. */
 GPROJI_INTERNAL void gproji_expect_group(gproj_form *form, int32_t group, size_t variables, size_t rows, size_t terms,
                                          size_t locals) {
@@ -19400,12 +19434,10 @@ GPROJI_INTERNAL void gproji_update_areas(gproj_form *form) {
 /* The unit sum of form->work.area around a vertex; e_z if that has no direction. */
 GPROJI_INTERNAL void gproji_vertex_normal(const gproj_form *form, int32_t vertex, double out[3]) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start;
+    int32_t h;
     gproji_set3(0, 0, 0, out);
-    do {
+    for (h = mesh->vertex_halfedge[vertex]; h >= 0; h = gproji_turn_right(mesh, h))
         if (mesh->face[h] >= 0) gproji_add_scaled3(1, form->work.area + 3 * (size_t)mesh->face[h], out);
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
     gproji_normalise3(out, gproji_up);
 }
 
@@ -19819,41 +19851,6 @@ GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
 GPROJI_RULE(gproji_fairness_rule, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 GPROJI_RULE(gproji_boundary_fairness_rule, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 
-/* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners. */
-GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
-    gproji_part *part = gproji_open_part(form, rule, 0, weight);
-    bool inside = rule != &gproji_boundary_fairness_rule;
-    const gproj_mesh *mesh;
-    gproji_difference d;
-    size_t vertices;
-    int32_t v, h, pair[2];
-    if (!part) return -1;
-    mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
-    if (inside)
-        gproji_expect_group(form, part->group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
-    for (v = 0; inside && v < mesh->vertex_count; ++v) {
-        int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
-    }
-    for (v = 0; v < mesh->vertex_count; ++v) {
-        if (!gproji_select_gliding(form, v)) continue;
-        h = mesh->vertex_halfedge[v];
-        pair[0] = 3 * mesh->origin[mesh->prev[h]];
-        pair[1] = 3 * mesh->origin[mesh->twin[h]];
-        d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
-        gproji_add_difference(part, &d);
-    }
-    return gproji_built(form, part->group);
-}
-
-GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
-    return gproji_add_fairness(form, &gproji_fairness_rule, weight);
-}
-
-GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
-    return gproji_add_fairness(form, &gproji_boundary_fairness_rule, weight);
-}
-
 /* Fills in the two rows u'd and w'd of each difference d: u, w span the plane orthogonal to the present normal at its
    vertex or face, which is in part->element. */
 GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system, int32_t group,
@@ -19886,17 +19883,46 @@ GPROJI_INTERNAL void gproji_refresh_differences(void *user, gproj_system *system
 static const gproji_acts gproji_difference_acts = {gproji_refresh_differences, NULL, NULL, NULL};
 GPROJI_RULE(gproji_tangential_rule, "tangential fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, &gproji_difference_acts);
 
-GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
+/* Adds differences inside, except for boundary fairness, then those along the boundary, except at corners and for
+   tangential fairness. */
+GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule *rule, double weight) {
+    bool inside = rule != &gproji_boundary_fairness_rule, tangential = rule == &gproji_tangential_rule;
+    const gproj_mesh *mesh;
     gproji_part *part;
-    int32_t v;
+    gproji_difference d;
+    size_t vertices;
+    int32_t v, h, pair[2];
     if (!gproji_form_ready(form)) return -1;
-    part = gproji_open_part(form, &gproji_tangential_rule, 2 * form->mesh->vertex_count, weight);
+    mesh = form->mesh, vertices = (size_t)mesh->vertex_count;
+    part = gproji_open_part(form, rule, tangential ? 2 * mesh->vertex_count : 0, weight);
     if (!part) return -1;
-    for (v = 0; v < form->mesh->vertex_count; ++v) {
+    if (inside && !tangential)
+        gproji_expect_group(form, part->group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
+    for (v = 0; inside && v < mesh->vertex_count; ++v) {
         int32_t count = gproji_vertex_ring(form, v);
         if (count) gproji_add_ring_differences(part, 3 * v, count, v);
     }
+    for (v = 0; !tangential && v < mesh->vertex_count; ++v) {
+        if (!gproji_select_gliding(form, v)) continue;
+        h = mesh->vertex_halfedge[v];
+        pair[0] = 3 * mesh->origin[mesh->prev[h]];
+        pair[1] = 3 * mesh->origin[mesh->twin[h]];
+        d.element = v, d.centre = 3 * v, d.count = 2, d.neighbour = pair;
+        gproji_add_difference(part, &d);
+    }
     return gproji_built(form, part->group);
+}
+
+GPROJ_API int32_t gproj_add_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_fairness_rule, weight);
+}
+
+GPROJ_API int32_t gproj_add_boundary_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_boundary_fairness_rule, weight);
+}
+
+GPROJ_API int32_t gproj_add_tangential_fairness(gproj_form *form, double weight) {
+    return gproji_add_fairness(form, &gproji_tangential_rule, weight);
 }
 
 /* Gives triangles their normals as variables: these have none until something needs them. Other faces get theirs with
@@ -20481,24 +20507,22 @@ GPROJ_API int32_t gproj_add_conicality(gproj_form *form, double weight) {
     if (!part) return -1;
     /* 2. Rows: a'a = 1, then one for each edge between two faces. */
     for (v = 0; v < mesh->vertex_count && gproji_form_ready(form); ++v) {
-        int32_t axis = form->cone[v], start = mesh->vertex_halfedge[v], h = start;
+        int32_t axis = form->cone[v], h;
         if (axis < 0) continue;
         for (c = 0; c < 3; ++c) gproji_set_term(&term[c], axis + c, axis + c, 1);
         gproji_add_row(form->system, part->group, 3, term, -1, v);
         part->element[part->count++] = ~v;
-        do {
+        for (h = mesh->vertex_halfedge[v]; h >= 0; h = gproji_turn_left(mesh, h)) {
             int32_t face = mesh->face[h], other = mesh->face[h ^ 1];
-            if (face >= 0 && other >= 0) {
-                gproji_set_point(&term[0], axis);
-                gproji_set_point(&term[3], 3 * v);
-                gproji_set_point(&term[6], 3 * mesh->origin[h ^ 1]);
-                gproji_set_point(&term[9], form->normal[face]);
-                gproji_set_point(&term[12], form->normal[other]);
-                gproji_add_row(form->system, part->group, 15, term, 0, v);
-                part->element[part->count++] = h;
-            }
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
+            if (face < 0 || other < 0) continue;
+            gproji_set_point(&term[0], axis);
+            gproji_set_point(&term[3], 3 * v);
+            gproji_set_point(&term[6], 3 * mesh->origin[h ^ 1]);
+            gproji_set_point(&term[9], form->normal[face]);
+            gproji_set_point(&term[12], form->normal[other]);
+            gproji_add_row(form->system, part->group, 15, term, 0, v);
+            part->element[part->count++] = h;
+        }
     }
     if (gproji_form_ready(form)) gproji_settle_cones(part, gproj_system_values(form->system), 0, part->count);
     return gproji_built(form, part->group);
@@ -21172,13 +21196,13 @@ GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const dou
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
     const int32_t *list = s->load_vertex + s->load_start[vertex];
-    int32_t row = gproji_axis_row(s, vertex, 2), start = mesh->vertex_halfedge[vertex], h = start, around, count, t;
+    int32_t row = gproji_axis_row(s, vertex, 2), h, around, count, t;
     int32_t terms = 3 * (int32_t)(s->load_start[vertex + 1] - s->load_start[vertex]);
     gproj_term *term = gproji_row_terms(form->system, s->group, row, &count);
     term += count - terms;
     for (t = 0; t < terms; ++t) term[t].a = 0;
     if (terms == 0) return constant;
-    do {
+    for (h = mesh->vertex_halfedge[vertex]; h >= 0; h = gproji_turn_right(mesh, h)) {
         int32_t other = mesh->origin[mesh->twin[h]];
         double half = 0.5 * per_length * gproji_density(&s->loads, h / 2), d[3], gradient[3];
         /* An edge puts w'(a - b) / 2 on each end, w along it: linear, without a constant. */
@@ -21202,8 +21226,7 @@ GPROJI_INTERNAL double gproji_linearise_weight(const gproj_form *form, const dou
                 around = mesh->next[around];
             } while (around != h);
         }
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
+    }
     return constant;
 }
 
@@ -21234,21 +21257,19 @@ GPROJI_INTERNAL void gproji_refresh_equilibrium(void *user, gproj_system *system
 }
 
 static const gproji_acts gproji_equilibrium_acts = {gproji_refresh_equilibrium, NULL, NULL, NULL};
-static const gproji_rule gproji_equilibrium_rule = {"equilibrium",   GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX,
-                                                    GPROJI_OWN_NONE, GPROJI_ORDINARY,  &gproji_equilibrium_acts};
+GPROJI_RULE(gproji_equilibrium_rule, "equilibrium", GPROJ_CONSTRAINT, GPROJ_PLACE_VERTEX, &gproji_equilibrium_acts);
 
 /* Adds a vertex's rows (1). `spoke`: work, 2 numbers for each edge there; `term`: work for a row. */
 GPROJI_INTERNAL void gproji_add_vertex_equilibrium(gproj_form *form, int32_t vertex, int32_t *spoke, gproj_term *term) {
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *s = form->statics;
-    int32_t start = mesh->vertex_halfedge[vertex], h = start, spokes = 0, count, c, k;
+    int32_t h, spokes = 0, count, c, k;
     int64_t l;
     /* 1. Spokes, the edges, each with a force: its variable, and the vertex at the other end. */
-    do {
+    for (h = mesh->vertex_halfedge[vertex]; h >= 0; h = gproji_turn_right(mesh, h)) {
         spoke[2 * spokes] = s->force[h / 2];
         spoke[2 * spokes++ + 1] = mesh->origin[mesh->twin[h]];
-        h = mesh->next[mesh->twin[h]];
-    } while (h != start);
+    }
     /* 2. Without dead loads a row has terms y_e (x_i - x_j), by places among the variables y_e, x_i, x_j of the first
        spoke, then y_e and x_j of each other one. */
     for (k = 0; k < spokes; ++k) {
@@ -21298,16 +21319,15 @@ GPROJI_INTERNAL void gproji_list_weights(const gproj_form *form, int32_t *mark) 
     int32_t v;
     for (v = 0; v < mesh->vertex_count; ++v) mark[v] = -1;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], h = start, around;
+        int32_t h, around;
         statics->load_start[v] = count;
         if (!(statics->axes[v] & 4) || !(areas || lengths)) continue;
         gproji_note_weight(statics, v, v, mark, &count);
-        do {
+        for (h = mesh->vertex_halfedge[v]; h >= 0; h = gproji_turn_right(mesh, h)) {
             gproji_note_weight(statics, v, mesh->origin[mesh->twin[h]], mark, &count);
             for (around = mesh->next[h]; areas && mesh->face[h] >= 0 && around != h; around = mesh->next[around])
                 gproji_note_weight(statics, v, mesh->origin[around], mark, &count);
-            h = mesh->next[mesh->twin[h]];
-        } while (h != start);
+        }
     }
     statics->load_start[mesh->vertex_count] = count;
 }
@@ -21325,33 +21345,30 @@ GPROJI_INTERNAL gproj_code gproji_check_equilibrium(gproj_form *form, const gpro
         return gproji_refuse(&form->error, "equilibrium: the supports are missing, or their list is");
     if (count > 0 && !gproji_take_list(form, "supports", GPROJ_PLACE_VERTEX, &count, supports->vertex))
         return form->error.code;
-    for (v = 0; supports->slides && v < count; ++v) {
-        if (supports->slides[v] <= GPROJI_AXES) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
-                           "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z", v,
-                           (int32_t)supports->slides[v]);
-    }
+    for (v = 0; supports->slides && v < count; ++v)
+        if (supports->slides[v] > GPROJI_AXES)
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, supports->vertex[v],
+                               "equilibrium: slides of support %d are %d, which is no sum of 1 for x, 2 for y, 4 for z",
+                               v, (int32_t)supports->slides[v]);
     if (!loads || !gproji_is_finite(loads->density) || !gproji_is_finite(loads->area_load) ||
         !gproji_is_finite(loads->snow))
         return gproji_refuse(&form->error,
                              "equilibrium: there are no loads, or density, area load or snow is not a finite number");
-    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e) {
-        if (gproji_is_finite(loads->edge_density[e])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
-                           "equilibrium: the density of edge %d is not a finite number", e);
-    }
-    for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v) {
-        if (gproji_is_finite(loads->point_load[v])) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
-                           "equilibrium: the load on vertex %d is not a finite number", v / 3);
-    }
+    for (e = 0; loads->edge_density && e < form->mesh->edge_count; ++e)
+        if (!gproji_is_finite(loads->edge_density[e]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_EDGE, e,
+                               "equilibrium: the density of edge %d is not a finite number", e);
+    for (v = 0; loads->point_load && v < 3 * form->mesh->vertex_count; ++v)
+        if (!gproji_is_finite(loads->point_load[v]))
+            return gproji_fail(&form->error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, v / 3,
+                               "equilibrium: the load on vertex %d is not a finite number", v / 3);
     for (v = 0; loads->point_load && v < form->mesh->vertex_count; ++v) {
         const double *load = loads->point_load + 3 * (size_t)v;
         if (form->mesh->vertex_halfedge[v] >= 0 || (load[0] == 0 && load[1] == 0 && load[2] == 0)) continue;
         for (k = 0; k < count && supports->vertex[k] != v; ++k) continue;
-        if (k < count) continue;
-        return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
-                           "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
+        if (k == count)
+            return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_VERTEX, v,
+                               "equilibrium: vertex %d bears a load, but has no edge that could carry it", v);
     }
     return GPROJ_OK;
 }
@@ -21525,8 +21542,7 @@ GPROJI_INTERNAL void gproji_refresh_stress(void *user, gproj_system *system, int
 }
 
 static const gproji_acts gproji_stress_acts = {gproji_refresh_stress, NULL, NULL, NULL};
-static const gproji_rule gproji_stress_rule = {"stress bounds", GPROJ_BOUND,     GPROJ_PLACE_EDGE,
-                                               GPROJI_OWN_NONE, GPROJI_ORDINARY, &gproji_stress_acts};
+GPROJI_RULE(gproji_stress_rule, "stress bounds", GPROJ_BOUND, GPROJ_PLACE_EDGE, &gproji_stress_acts);
 
 GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const int32_t *edges, const double *sections,
                                           double min, double max, double weight) {
@@ -21537,13 +21553,12 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
         !gproji_take_list(form, "stress bounds", GPROJ_PLACE_EDGE, &count, edges))
         return -1;
     if (!gproji_bounds_are_valid(form, "stress bounds", min, max)) return -1;
-    for (k = 0; sections && k < count; ++k) {
-        if (sections[k] > 0 && gproji_is_finite(sections[k])) continue;
-        gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
-                    "stress bounds: edge %d would have the cross-section %g, which is not > 0 and finite",
-                    edges ? edges[k] : k, sections[k]);
-        return -1;
-    }
+    for (k = 0; sections && k < count; ++k)
+        if (!(sections[k] > 0) || !gproji_is_finite(sections[k]))
+            return gproji_none(
+                gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_EDGE, edges ? edges[k] : k,
+                            "stress bounds: edge %d would have the cross-section %g, which is not > 0 and finite",
+                            edges ? edges[k] : k, sections[k]));
     part = gproji_open_part(form, &gproji_stress_rule, 2 * count, weight);
     if (!part) return -1;
     part->given[0] = min;
@@ -21577,8 +21592,7 @@ GPROJI_INTERNAL void gproji_refresh_force_fairness(void *user, gproj_system *sys
 }
 
 static const gproji_acts gproji_force_fairness_acts = {gproji_refresh_force_fairness, NULL, NULL, NULL};
-static const gproji_rule gproji_force_fairness_rule = {"force fairness", GPROJ_WISH,      GPROJ_PLACE_FACE,
-                                                       GPROJI_OWN_NONE,  GPROJI_ORDINARY, &gproji_force_fairness_acts};
+GPROJI_RULE(gproji_force_fairness_rule, "force fairness", GPROJ_WISH, GPROJ_PLACE_FACE, &gproji_force_fairness_acts);
 
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight) {
     const gproj_mesh *mesh;
@@ -21786,14 +21800,16 @@ GPROJI_INTERNAL void gproji_unbalanced(const gproj_form *form, const double *x, 
 }
 
 /* Finds the best forces for the mesh as it is, and the loads that they leave: any of the arrays may be NULL. */
-GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left,
-                                         gproj_error *error) {
+GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densities, double *residuals, double *left,
+                                               gproj_error *error) {
     gproji_balance p;
+    gproj_error own;
     double *x, mean;
     int32_t v, e;
+    gproji_error_clear(error = error ? error : &own);
     if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
         !gproji_take_balance(form, error, &p))
-        return;
+        return error->code;
     /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, 1, form->mesh->position, &p);
     for (v = 0; mean > 0 && v < 3 * form->mesh->vertex_count; ++v) p.load[v] /= mean;
@@ -21813,22 +21829,17 @@ GPROJI_INTERNAL void gproji_find_balance(gproj_form *form, double *densities, do
         for (e = 0; whole && densities && e < form->mesh->edge_count; ++e) densities[e] = p.force[e];
     }
     gproji_pool_give_all(&p.pool);
+    return error->code;
 }
 
 GPROJ_API gproj_code gproj_find_forces(gproj_form *form, double *densities, double *residuals, gproj_error *error) {
-    gproj_error own;
-    error = error ? error : &own;
-    if (gproji_begin_question(form, "find forces", true, error) == GPROJ_OK)
-        gproji_find_balance(form, densities, residuals, NULL, error);
-    return error->code;
+    gproj_code code = gproji_begin_question(form, "find forces", true, error);
+    return code ? code : gproji_find_balance(form, densities, residuals, NULL, error);
 }
 
 GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacements, gproj_error *error) {
-    gproj_error own;
-    error = error ? error : &own;
-    if (gproji_begin_question(form, "find imbalance", displacements != NULL, error) == GPROJ_OK)
-        gproji_find_balance(form, NULL, NULL, displacements, error);
-    return error->code;
+    gproj_code code = gproji_begin_question(form, "find imbalance", displacements != NULL, error);
+    return code ? code : gproji_find_balance(form, NULL, NULL, displacements, error);
 }
 
 /* -- the start of a solve -- */
@@ -21837,23 +21848,19 @@ GPROJ_API gproj_code gproj_find_imbalance(gproj_form *form, double *displacement
    number a vertex each. */
 GPROJI_INTERNAL int32_t gproji_support_radius(const gproj_form *form, int32_t *queue, int32_t *distance) {
     const gproj_mesh *mesh = form->mesh;
-    int32_t v, head, tail = 0, radius = 1;
+    int32_t v, h, head, tail = 0, radius = 1;
     for (v = 0; v < mesh->vertex_count; ++v) {
         distance[v] = form->statics->axes[v] == GPROJI_AXES ? -1 : 0;
         if (distance[v] == 0) queue[tail++] = v;
     }
     for (head = 0; head < tail; ++head) {
-        int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
-        if (h < 0) continue;
-        do {
+        for (h = mesh->vertex_halfedge[queue[head]]; h >= 0; h = gproji_turn_right(mesh, h)) {
             int32_t other = mesh->origin[mesh->twin[h]];
-            if (distance[other] < 0) {
-                distance[other] = distance[queue[head]] + 1;
-                radius = gproji_max(radius, distance[other]);
-                queue[tail++] = other;
-            }
-            h = mesh->next[mesh->twin[h]];
-        } while (h != start);
+            if (distance[other] >= 0) continue;
+            distance[other] = distance[queue[head]] + 1;
+            radius = gproji_max(radius, distance[other]);
+            queue[tail++] = other;
+        }
     }
     return radius;
 }
@@ -21973,9 +21980,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
     if (code) return code;
     s = form->statics;
     x = gproj_system_values(form->system);
-    for (e = 0; !densities && e < form->mesh->edge_count; ++e)
-        if (s->force[e] >= 0) x[s->force[e]] = 0;
     if (!densities) {
+        for (e = 0; e < form->mesh->edge_count; ++e)
+            if (s->force[e] >= 0) x[s->force[e]] = 0;
         s->started = form->solve.on;
         gproji_set_changed(form->system, true);
         return GPROJ_OK;
@@ -22119,20 +22126,14 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
                                           const gproj_progress *progress) {
     const gproji_part *part = (const gproji_part *)user;
     double wanted = progress->tangential ? gproji_guard_small : gproji_guard_wanted;
-    int32_t i, count, t, k;
+    int32_t i, count, t;
     for (i = 0; i < part->count; ++i) {
         double n[3], area = gproji_length3(gproji_guarded_areas(part) + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         gproji_set_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
         if (!(area > gproji_guard_area)) continue;
         gproji_guard_normal(part, gproj_system_values(system), i, n);
-        /* for each edge the six products of (a x b)'n / 2, in the order of gproji_add_guard */
-        for (t = 0; t < count; t += 6) {
-            for (k = 0; k < 3; ++k) {
-                term[t + 2 * k].a = 0.5 * n[(k + 2) % 3] / area;
-                term[t + 2 * k + 1].a = -term[t + 2 * k].a;
-            }
-        }
+        for (t = 0; t < count; t += 6) gproji_weigh_cross(term + t, n, 2 * area); /* (a x b)'n / 2 for each edge */
     }
 }
 
@@ -22171,7 +22172,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     const gproj_mesh *mesh = form->mesh;
     gproj_term term[6 * GPROJI_GUARD_DEGREE];
     gproji_part *part;
-    int32_t f, h, c, k, terms, count = 0;
+    int32_t f, h, c, count = 0;
     for (f = 0; f < mesh->face_count; ++f) count += mesh->face_degree[f] <= GPROJI_GUARD_DEGREE;
     part = gproji_new_part(form, &gproji_guard_rule, count);
     if (!part) return;
@@ -22180,15 +22181,9 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->element[count++] = f;
-        /* For each edge a b the products a_x b_y, - a_y b_x (n_z), a_y b_z, - a_z b_y (n_x), ... */
-        for (c = 0, terms = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
-            int32_t a = 3 * mesh->origin[h], b = 3 * mesh->origin[mesh->next[h]];
-            for (k = 0; k < 3; ++k) {
-                gproji_set_term(&term[terms++], a + k, b + (k + 1) % 3, 0);
-                gproji_set_term(&term[terms++], a + (k + 1) % 3, b + k, 0);
-            }
-        }
-        gproji_add_row(form->system, part->group, terms, term, -gproji_guard_wanted, f);
+        for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h])
+            gproji_set_cross(&term[6 * c], 3 * mesh->origin[h], 3 * mesh->origin[mesh->next[h]]);
+        gproji_add_row(form->system, part->group, 6 * c, term, -gproji_guard_wanted, f);
     }
 }
 
@@ -22331,11 +22326,7 @@ GPROJI_INTERNAL double gproji_linearise_corner(const gproji_part *part, const do
     if (upright) gproji_copy3(corners->axis + 3 * (size_t)mesh->face[h], m);
     gproji_corner_area(mesh, x, h, area);
     has = gproji_dot3(area, m) / corners->size[h];
-    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6) /* the six products of (a x b)'m for each pair a b of the corner */
-        for (k = 0; k < 3; ++k) {
-            term[t + 2 * k].a = m[(k + 2) % 3] / corners->size[h];
-            term[t + 2 * k + 1].a = -term[t + 2 * k].a;
-        }
+    for (t = 0; t < GPROJI_CORNER_TERMS; t += 6) gproji_weigh_cross(term + t, m, corners->size[h]);
     if (yield == GPROJI_YIELD_LAST) return upright ? gproji_corner_upright_last : gproji_corner_last;
     if (yield == GPROJI_YIELD_FLOOR) return least;
     return gproji_fmax(gproji_fmin(has, upright ? gproji_corner_upright : gproji_corner_wanted), least);
@@ -22370,14 +22361,9 @@ GPROJI_INTERNAL int32_t gproji_add_corner_row(gproji_part *part, int32_t item) {
     if (edge < 0 ? face < 0 : bends && (face < 0 || beside < 0 || normal[face] < 0 || normal[beside] < 0)) return -1;
     vertex[0] = mesh->origin[h], vertex[1] = mesh->origin[mesh->next[h]];
     vertex[2] = mesh->origin[mesh->next[mesh->next[h]]];
-    /* A corner: (b - a) x (c - b) = a x b + b x c + c x a, for each of these the products a_x b_y, - a_y b_x (m_z),
-       a_y b_z, - a_z b_y (m_x), ...; coefficients by gproji_linearise_corner. */
-    for (c = 0; edge < 0 && c < 3; ++c)
-        for (k = 0; k < 3; ++k) {
-            int32_t a = 3 * vertex[c], b = 3 * vertex[(c + 1) % 3];
-            gproji_set_term(&term[count++], a + k, b + (k + 1) % 3, 0);
-            gproji_set_term(&term[count++], a + (k + 1) % 3, b + k, 0);
-        }
+    /* A corner: (b - a) x (c - b) = a x b + b x c + c x a. */
+    for (c = 0; edge < 0 && c < 3; ++c, count += 6)
+        gproji_set_cross(&term[count], 3 * vertex[c], 3 * vertex[(c + 1) % 3]);
     for (k = 0; bends && k < 3; ++k) gproji_set_term(&term[count++], normal[face] + k, -1, 0);
     if (edge >= 0 && !bends) gproji_set_length_terms(mesh, edge, 0, term), count = 9;
     row = gproji_add_row(part->form->system, part->group, count, term, 0, face);
@@ -22500,17 +22486,16 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
     int32_t f, h, c, e;
     for (f = 0; part && f < mesh->face_count; ++f) {
         const double *size = gproji_corners_of(part)->size;
-        double m[3], area[3], now, had;
-        gproji_corner_normal(form, x, before, f, m);
+        double is[3], was[3], area[3], now, had;
+        gproji_corner_normal(form, x, before, f, is);
+        gproji_corner_normal(form, before, before, f, was);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             gproji_corner_area(mesh, x, h, area);
-            now = gproji_dot3(area, m);
+            now = gproji_dot3(area, is);
             if (!(size[h] > 0) || now >= gproji_corner_kept * size[h]) continue;
             gproji_corner_area(mesh, before, h, area);
-            gproji_corner_normal(form, before, before, f, m);
-            had = gproji_dot3(area, m);
+            had = gproji_dot3(area, was);
             if (had > 0 && now < gproji_corner_kept * had) return true;
-            gproji_corner_normal(form, x, before, f, m);
         }
     }
     for (e = 0; part && e < mesh->edge_count; ++e) {
@@ -22695,38 +22680,32 @@ enum {
     GPROJI_HELD_MOST = 64 /* vertices of a face that are looked at */
 };
 
-/* Writes the unit normal of the area of a fan of points about the origin. False if the area is small beside the
-   distances: rounding would turn the normal of points along a line. */
-GPROJI_INTERNAL bool gproji_fan_normal(int32_t count, double (*offset)[3], double normal[3]) {
-    double squares = 0, area[3];
-    int32_t k;
-    gproji_copy3(gproji_zero, normal);
-    for (k = 1; k < count; ++k) {
-        gproji_cross3(offset[k - 1], offset[k], area);
-        gproji_add_scaled3(1, area, normal);
-        squares += gproji_dot3(offset[k], offset[k]);
-    }
-    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
+/* Points of a face, seen from the first one. */
+typedef struct gproji_fan {
+    const double *first;
+    double offset[GPROJI_HELD_MOST][3];
+    int32_t count;
+} gproji_fan;
+
+GPROJI_INTERNAL void gproji_add_to_fan(gproji_fan *fan, const double *point) {
+    if (fan->count == GPROJI_HELD_MOST) return;
+    if (fan->count == 0) fan->first = point;
+    gproji_sub3(point, fan->first, fan->offset[fan->count++]);
 }
 
-/* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
-   fan; *count: how many there are. 0 if they lie along a line. */
-GPROJI_INTERNAL double gproji_held_bend(const gproj_mesh *mesh, const int32_t *kept, const double *value, int32_t face,
-                                        int32_t *count) {
-    double offset[GPROJI_HELD_MOST][3], normal[3], mean = 0, most = 0;
-    const double *first = NULL;
-    int32_t h = mesh->face_halfedge[face], held_count = 0, c, k;
-    for (c = 0; c < mesh->face_degree[face] && held_count < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
-        size_t v = 3 * (size_t)mesh->origin[h];
-        if (kept[mesh->origin[h]] <= 0) continue;
-        if (!first) first = value + v;
-        gproji_sub3(value + v, first, offset[held_count++]);
+/* Writes the unit normal of the fan's area. False with fewer than three points, or if the area is small beside the
+   distances: rounding would turn the normal of points along a line. */
+GPROJI_INTERNAL bool gproji_fan_normal(const gproji_fan *fan, double normal[3]) {
+    double squares = 0, area[3];
+    int32_t k;
+    if (fan->count < 3) return false;
+    gproji_copy3(gproji_zero, normal);
+    for (k = 1; k < fan->count; ++k) {
+        gproji_cross3(fan->offset[k - 1], fan->offset[k], area);
+        gproji_add_scaled3(1, area, normal);
+        squares += gproji_dot3(fan->offset[k], fan->offset[k]);
     }
-    *count = held_count;
-    if (held_count < 4 || !gproji_fan_normal(held_count, offset, normal)) return 0;
-    for (k = 0; k < held_count; ++k) mean += gproji_dot3(normal, offset[k]) / held_count;
-    for (k = 0; k < held_count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, offset[k]) - mean));
-    return most;
+    return gproji_length3(normal) >= 0.01 * squares && gproji_normalise3(normal, gproji_zero);
 }
 
 /* Planes spread. A flat quad with three corners in a plane, not along a line, lies in that plane. So the plane of a
@@ -22759,6 +22738,23 @@ GPROJI_INTERNAL bool gproji_stays(const gproji_spread *s, int32_t v) { return s-
 /* The place of a vertex: that at which it is held, or the one at the beginning. */
 GPROJI_INTERNAL const double *gproji_place_of(const gproji_spread *s, int32_t v) {
     return (gproji_stays(s, v) ? s->value : s->form->original) + 3 * (size_t)v;
+}
+
+/* How far the held vertices of a face are from the plane through their mean that is orthogonal to the area of their
+   fan; *count: how many there are. 0 if they lie along a line. */
+GPROJI_INTERNAL double gproji_held_bend(const gproji_spread *s, int32_t face, int32_t *count) {
+    const gproj_mesh *mesh = s->form->mesh;
+    gproji_fan fan;
+    double normal[3], mean = 0, most = 0;
+    int32_t h = mesh->face_halfedge[face], c, k;
+    fan.count = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        if (gproji_stays(s, mesh->origin[h])) gproji_add_to_fan(&fan, gproji_place_of(s, mesh->origin[h]));
+    *count = fan.count;
+    if (fan.count < 4 || !gproji_fan_normal(&fan, normal)) return 0;
+    for (k = 0; k < fan.count; ++k) mean += gproji_dot3(normal, fan.offset[k]) / fan.count;
+    for (k = 0; k < fan.count; ++k) most = gproji_fmax(most, fabs(gproji_dot3(normal, fan.offset[k]) - mean));
+    return most;
 }
 
 /* The height of a vertex above the plane. */
@@ -22816,15 +22812,13 @@ GPROJI_INTERNAL bool gproji_is_in_plane(gproji_spread *s, int32_t v) {
 /* Takes the other vertices of a face with three corners in the plane into it. */
 GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
-    double offset[GPROJI_HELD_MOST][3], normal[3];
-    const double *first = NULL;
-    int32_t h = mesh->face_halfedge[face], in = 0, c;
-    for (c = 0; c < mesh->face_degree[face] && in < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
-        if (!gproji_is_in_plane(s, mesh->origin[h])) continue;
-        if (!first) first = gproji_place_of(s, mesh->origin[h]);
-        gproji_sub3(gproji_place_of(s, mesh->origin[h]), first, offset[in++]);
-    }
-    if (in < 3 || !gproji_fan_normal(in, offset, normal)) return;
+    gproji_fan fan;
+    double normal[3];
+    int32_t h = mesh->face_halfedge[face], c;
+    fan.count = 0;
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h])
+        if (gproji_is_in_plane(s, mesh->origin[h])) gproji_add_to_fan(&fan, gproji_place_of(s, mesh->origin[h]));
+    if (!gproji_fan_normal(&fan, normal)) return;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
         double off;
@@ -22844,27 +22838,22 @@ GPROJI_INTERNAL void gproji_spread_to(gproji_spread *s, int32_t face) {
    held, and spreads it as far as it goes. */
 GPROJI_INTERNAL void gproji_spread_from(gproji_spread *s, int32_t face) {
     const gproj_mesh *mesh = s->form->mesh;
-    double offset[GPROJI_HELD_MOST][3];
-    int32_t h = mesh->face_halfedge[face], kept = 0, held = 0, c, head;
+    gproji_fan fan;
+    int32_t h = mesh->face_halfedge[face], held = 0, c, head;
+    fan.count = 0;
     s->count = 0, s->vertex = -1, s->off = 0;
     for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) held += gproji_stays(s, mesh->origin[h]);
-    for (c = 0; c < mesh->face_degree[face] && kept < GPROJI_HELD_MOST; ++c, h = mesh->next[h]) {
+    for (c = 0; c < mesh->face_degree[face]; ++c, h = mesh->next[h]) {
         int32_t v = mesh->origin[h];
-        if (s->kept[v] == 0 || (s->kept[v] < 0 && held >= 3)) continue;
-        if (kept == 0) gproji_copy3(gproji_place_of(s, v), s->point);
-        gproji_sub3(gproji_place_of(s, v), s->point, offset[kept++]);
+        if (s->kept[v] > 0 || (s->kept[v] < 0 && held < 3)) gproji_add_to_fan(&fan, gproji_place_of(s, v));
     }
-    if (kept < 3 || s->plane == GPROJI_PLANES_MOST || !gproji_fan_normal(kept, offset, s->normal)) return;
+    if (s->plane == GPROJI_PLANES_MOST || !gproji_fan_normal(&fan, s->normal)) return;
+    gproji_copy3(fan.first, s->point);
     s->plane++;
     gproji_spread_to(s, face);
-    for (head = 0; head < s->count; ++head) {
-        int32_t start = mesh->vertex_halfedge[s->queue[head]];
-        h = start;
-        do {
+    for (head = 0; head < s->count; ++head)
+        for (h = mesh->vertex_halfedge[s->queue[head]]; h >= 0; h = gproji_turn_left(mesh, h))
             if (mesh->face[h] >= 0 && mesh->face_degree[mesh->face[h]] == 4) gproji_spread_to(s, mesh->face[h]);
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
-    }
 }
 
 /* A vertex without support whose load, 3 numbers per vertex, leaves the plane that all its edges are in; -1: none. */
@@ -22872,16 +22861,14 @@ GPROJI_INTERNAL int32_t gproji_find_unbearable(gproji_spread *s, const double *l
     const gproj_mesh *mesh = s->form->mesh;
     int32_t k;
     for (k = 0; k < s->count; ++k) {
-        int32_t v = s->queue[k], start = mesh->vertex_halfedge[v], h = start;
+        int32_t v = s->queue[k], h;
         const double *own = load + 3 * (size_t)v;
         bool in = true;
         if (s->form->statics->axes[v] != GPROJI_AXES ||
             !(fabs(gproji_dot3(own, s->normal)) > gproji_plane_far * gproji_length3(own)))
             continue;
-        do {
+        for (h = mesh->vertex_halfedge[v]; h >= 0; h = gproji_turn_left(mesh, h))
             in = in && gproji_is_in_plane(s, mesh->origin[h ^ 1]);
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
         if (in) return v;
     }
     return -1;
@@ -22894,6 +22881,7 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
     const gproj_mesh *mesh = form->mesh;
     const gproji_statics *statics = form->statics && gproji_is_on(form, form->statics->group) ? form->statics : NULL;
     int32_t f, face = -1, vertex = -1, planes = 0, loaded_face = -1, loaded = -1;
+    const char *others = "";
     double off = 0;
     if (statics) gproj_get_loads(form, statics->work, NULL);
     for (f = 0; f < mesh->face_count; ++f) {
@@ -22905,22 +22893,21 @@ GPROJI_INTERNAL bool gproji_tell_planes(gproji_spread *s, gproj_result *result) 
         loaded = gproji_find_unbearable(s, statics->work);
         if (loaded >= 0) loaded_face = f;
     }
-    if (vertex >= 0 && gproji_stays(s, vertex))
+    if (planes > 1) others = ", and others likewise";
+    if (vertex < 0 && loaded < 0) return false;
+    gproji_tell(result, "; flat faces that keep their corners share one plane from face %d on, ",
+                vertex >= 0 ? face : loaded_face);
+    if (vertex < 0)
+        gproji_tell(result, "in which vertex %d cannot carry its load: let some of the held vertices go", loaded);
+    else if (gproji_stays(s, vertex))
+        gproji_tell(result, "but vertex %d is held %g mean edges off it%s: let some of the held vertices go", vertex,
+                    off, others);
+    else
         gproji_tell(result,
-                    "; flat faces that keep their corners share one plane from face %d on, but vertex %d is held %g "
-                    "mean edges off it%s: let some of the held vertices go",
-                    face, vertex, off, planes > 1 ? ", and others likewise" : "");
-    else if (vertex >= 0)
-        gproji_tell(result,
-                    "; flat faces that keep their corners share one plane from face %d on, but the side along which "
-                    "vertex %d glides meets it nowhere between held vertices%s: let some of these go",
-                    face, vertex, planes > 1 ? ", and others likewise" : "");
-    else if (loaded >= 0)
-        gproji_tell(result,
-                    "; flat faces that keep their corners share one plane from face %d on, in which vertex %d cannot "
-                    "carry its load: let some of the held vertices go",
-                    loaded_face, loaded);
-    return vertex >= 0 || loaded >= 0;
+                    "but the side along which vertex %d glides meets it nowhere between held vertices%s: let some of "
+                    "these go",
+                    vertex, others);
+    return true;
 }
 
 /* Angles of circles. In a convex polygon with a circumcircle and an even number of corners the angles at every other
@@ -22973,20 +22960,19 @@ GPROJI_INTERNAL void gproji_tell_angles(gproji_spread *s, gproj_result *result) 
         if (colour[v] != 0 || mesh->vertex_halfedge[v] < 0) continue;
         colour[v] = 1;
         for (s->queue[count++] = v; head < count; ++head) {
-            int32_t u = s->queue[head], start = mesh->vertex_halfedge[u], h = start, side;
+            int32_t u = s->queue[head], h, side;
             double more = 2 * GPROJI_PI;
             if (gproj_mesh_is_boundary_vertex(mesh, u)) {
                 edged = true;
                 loose = loose || s->kept[u] == 0;
                 more = gproji_stays(s, u) ? gproji_held_angle(s, u) : GPROJI_PI;
             }
-            do {
+            for (h = mesh->vertex_halfedge[u]; h >= 0; h = gproji_turn_left(mesh, h)) {
                 int32_t w = mesh->origin[h ^ 1], face = mesh->face[h];
                 if (face >= 0) more -= GPROJI_PI * (1 - 2.0 / mesh->face_degree[face]);
                 loose = loose || colour[w] == colour[u];
                 if (colour[w] == 0) s->queue[count++] = w, colour[w] = -colour[u];
-                h = gproji_rotate(mesh, h);
-            } while (h != start);
+            }
             more *= colour[u];
             sum += more;
             side = more < 0;
@@ -23041,39 +23027,30 @@ GPROJI_INTERNAL void gproji_tell_asymptotic(const gproj_form *form, gproj_result
     int32_t inner = 0, twisted = 0, v;
     if (!gproji_is_on(form, form->planarity)) return;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        int32_t start = mesh->vertex_halfedge[v], h = start, faces = 0, quads = 0;
-        if (start < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
-        do {
-            ++faces;
-            quads += mesh->face_degree[mesh->face[h]] == 4;
-            h = gproji_rotate(mesh, h);
-        } while (h != start);
+        int32_t h = mesh->vertex_halfedge[v], faces = 0, quads = 0;
+        if (h < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        for (; h >= 0; h = gproji_turn_left(mesh, h), ++faces) quads += mesh->face_degree[mesh->face[h]] == 4;
         ++inner;
         twisted += faces == 4 && quads == 4 && gproji_twists_at(mesh, form->original, v);
     }
     if (twisted > 0.9 * inner) gproji_tell_whole(result, clause);
 }
 
-/* Says why faces cannot be flat: the held vertices of one leave no plane, by 1e-9 or by what explains the residual; all
-   vertices are held; else a plane that spreads, or angles, if no face has been let go. Returns true in the first case
-   alone: no other attempt can help. */
-GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
-    double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual));
-    double *value = gproji_spare(form->system, 1), worst = 0;
-    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
-    int32_t r, bent = 0, face = -1, corners = 0, previous = -1, all = gproji_find_held(form, kept, value);
-    bool planar = gproji_is_on(form, form->planarity), whole = planar;
-    const gproji_group *g = planar ? gproji_group_at(form->system, form->planarity) : NULL;
-    for (r = 0; planar && r < g->row_count; ++r) { /* each face once */
+/* Names the flat face whose held vertices are farthest from a plane, by 1e-9 or by what explains the residual. Returns
+   whether there is one; *whole: no face has been let go. */
+GPROJI_INTERNAL bool gproji_tell_bent(const gproji_spread *s, gproj_result *result, bool *whole) {
+    const gproji_group *g = gproji_group_at(s->form->system, s->form->planarity);
+    double noticeable = gproji_fmax(4 * result->tolerance, gproji_fmin(1e-9, 0.1 * result->residual)), worst = 0;
+    int32_t r, bent = 0, face = -1, corners = 0, previous = -1;
+    for (r = 0, *whole = true; r < g->row_count; ++r) { /* each face once */
         int32_t count, f = g->row[r].element;
         double bend;
-        whole = whole && g->row[r].weight > 0;
+        *whole = *whole && g->row[r].weight > 0;
         if (!(g->row[r].weight > 0) || f == previous) continue;
         previous = f;
-        bend = gproji_held_bend(form->mesh, kept, value, f, &count);
-        if (!(bend > noticeable)) continue;
-        ++bent;
-        if (bend > worst) worst = bend, face = f, corners = count;
+        bend = gproji_held_bend(s, f, &count);
+        bent += bend > noticeable;
+        if (bend > noticeable && bend > worst) worst = bend, face = f, corners = count;
     }
     if (bent > 0)
         gproji_tell(result,
@@ -23081,17 +23058,27 @@ GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *resu
                     "let one of them go%s",
                     face, corners, worst, bent > 1 ? ", and others likewise" : "",
                     worst < 1e-6 ? ", or set a larger tolerance" : "");
-    else if (all == vertices)
-        gproji_tell(result, "; all vertices are fixed: let some of them go");
-    else if (whole) {
-        gproji_spread spread;
-        memset(&spread, 0, sizeof spread);
-        spread.form = form, spread.kept = kept, spread.value = value;
-        spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
-        memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
-        if (!gproji_tell_planes(&spread, result)) gproji_tell_angles(&spread, result);
-    }
     return bent > 0;
+}
+
+/* Says why faces cannot be flat: the held vertices of one leave no plane; or all vertices are held; else a plane that
+   spreads, or angles, if no face has been let go. Returns true in the first case alone: no other attempt can help. */
+GPROJI_INTERNAL bool gproji_tell_held(const gproj_form *form, gproj_result *result) {
+    double *value = gproji_spare(form->system, 1);
+    int32_t *kept = (int32_t *)(void *)gproji_spare(form->system, 0), vertices = form->mesh->vertex_count;
+    int32_t held = gproji_find_held(form, kept, value);
+    bool whole = false;
+    gproji_spread spread;
+    memset(&spread, 0, sizeof spread);
+    spread.form = form, spread.kept = kept, spread.value = value;
+    spread.looked = kept + vertices, spread.queue = spread.looked + vertices;
+    memset(spread.looked, 0, (size_t)vertices * sizeof *spread.looked);
+    if (gproji_is_on(form, form->planarity) && gproji_tell_bent(&spread, result, &whole)) return true;
+    if (held == vertices)
+        gproji_tell(result, "; all vertices are fixed: let some of them go");
+    else if (whole && !gproji_tell_planes(&spread, result))
+        gproji_tell_angles(&spread, result);
+    return false;
 }
 
 /* A vertex of a part of the mesh that has loads and no support; -1: none. */
@@ -23103,23 +23090,21 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
     for (v = 0; v < mesh->vertex_count; ++v) seen[v] = mesh->vertex_halfedge[v] < 0;
     for (v = 0; v < mesh->vertex_count && found < 0; ++v) {
         double sum[3] = {0, 0, 0}, size = 0;
-        int32_t head, tail = 0;
+        int32_t head, tail = 0, h;
         bool supported = false;
         if (seen[v]) continue;
         seen[v] = 1;
         queue[tail++] = v;
         for (head = 0; head < tail; ++head) {
-            int32_t start = mesh->vertex_halfedge[queue[head]], h = start;
             const double *load = s->work + 3 * (size_t)queue[head];
             supported = supported || s->axes[queue[head]] != GPROJI_AXES;
             for (k = 0; k < 3; ++k) sum[k] += load[k];
             size += gproji_length3(load);
-            do {
+            for (h = mesh->vertex_halfedge[queue[head]]; h >= 0; h = gproji_turn_right(mesh, h)) {
                 int32_t other = mesh->origin[mesh->twin[h]];
                 if (!seen[other]) queue[tail++] = other;
                 seen[other] = 1;
-                h = mesh->next[mesh->twin[h]];
-            } while (h != start);
+            }
         }
         if (!supported && gproji_length3(sum) > 1e-9 * size) found = v;
     }
@@ -23383,15 +23368,18 @@ GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
-/* Is there a wish of the caller's, or for the release of a drag, with a weight? */
-GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) {
+/* The largest weight of a wish of the caller's, or for the release of a drag; 0: there is none. */
+GPROJI_INTERNAL double gproji_largest_wish(const gproj_form *form) {
+    double largest = 0;
     int32_t i;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (g->role < GPROJI_GUIDE && g->kind == GPROJ_WISH && g->schedule.weight > 0 && g->row_count > 0) return true;
+        if (gproji_is_callers_wish(g) && g->row_count > 0) largest = gproji_fmax(largest, g->schedule.weight);
     }
-    return false;
+    return largest;
 }
+
+GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) { return gproji_largest_wish(form) > 0; }
 
 /* Weights of a step's differences along edges, and of a vertex's displacement relative to that. With more of the latter
    meshes move less and become rough. */
@@ -23535,8 +23523,8 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
 /* If no wish guides, closeness to the beginning of this solve does, with weights 0.03 * 0.3^n in the first half, at
    most 5 times. Guidance that fades more slowly moves the mesh less, but lets rounding of the input grow, and
    longer guidance leaves too few iterations for meshes near singular points. If the nearest mesh is asked for,
-   closeness defines "near"; later attempts have what their beginning says; `skip`: neither, and what an earlier solve has
-   left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
+   closeness defines "near"; later attempts have what their beginning says; `skip`: neither, and what an earlier solve
+   has left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
     bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
@@ -23605,9 +23593,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
-    bool started = form->statics && form->statics->started, ending = false;
+    bool started = form->statics && form->statics->started;
     const gproji_part *part;
-    double largest = 0; /* weight of a caller's wish */
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
     if (form->drag) {
@@ -23648,15 +23635,13 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
     solve->loop.wishes.last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wishes.last = gproji_min(9, solve->loop.wishes.last);
-    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
+    if (beginning->fading && gproji_has_active_wish(form))
+        solve->loop.wishes.fading = gproji_nearest_scale / gproji_largest_wish(form);
+    for (i = 0; beginning->left_out && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        int32_t last = gproji_last_iteration(&solve->loop, g);
-        if (g->kind != GPROJ_WISH || g->role >= GPROJI_GUIDE || g->row_count == 0) continue;
-        largest = gproji_fmax(largest, g->schedule.weight);
-        ending = ending || (g->schedule.weight > 0 && last < iterations);
+        if (g->row_count > 0 && g->schedule.weight > 0 && gproji_only_guides(&solve->loop, g))
+            solve->loop.attempt.left_out = true;
     }
-    if (beginning->fading && largest > 0) solve->loop.wishes.fading = gproji_nearest_scale / largest;
-    solve->loop.wishes.left_out = beginning->left_out && ending;
     return solve->on;
 failed:
     solve->loop.result = gproji_failed_result(gproj_form_error(form));
@@ -23683,14 +23668,15 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_hooks *hooks = &loop->hooks;
     bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended, doubted;
     /* 1. What the form adds to the system's steps. */
-    form->solve.futile = false;
+    loop->attempt.futile = false;
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
     if (nearest && gproji_own_part(form, GPROJI_OWN_CORNERS)) hooks->mend = gproji_mend_corners;
     /* Without local unknowns steps are bent in later attempts only: equilibrium moves farther by them, but may hold
        with whole faces where it does not with straight steps. */
-    if (smooth && (loop->earlier > 0 || gproji_is_on(form, form->planarity))) hooks->settle = gproji_settle_form;
+    if (smooth && (loop->attempt.earlier > 0 || gproji_is_on(form, form->planarity)))
+        hooks->settle = gproji_settle_form;
     if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
         hooks->inspect = gproji_inspect_corners;
         hooks->wake = gproji_wake_corners;
@@ -23713,12 +23699,12 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
-    if (gproji_has_active_wish(form) && !loop->wishes.left_out && !gproji_is_held(form))
+    if (gproji_has_active_wish(form) && !loop->attempt.left_out && !gproji_is_held(form))
         gproji_tell(result, "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference");
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
         size_t length = strlen(result->message);
-        if (!(result->residual <= result->tolerance)) form->solve.futile = gproji_tell_held(form, result);
+        if (!(result->residual <= result->tolerance)) loop->attempt.futile = gproji_tell_held(form, result);
         if (loop->hopeful && !result->message[length]) /* nothing is known against it */
             gproji_tell(result, gproji_more_iterations);
         if (!(result->residual <= result->tolerance)) gproji_tell_asymptotic(form, result);
@@ -23727,7 +23713,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     }
     gproji_tell_spoiled(form, result);
     if (result->outcome != GPROJ_CONVERGED) return *result;
-    if (loop->wishes.left_out)
+    if (loop->attempt.left_out)
         gproji_tell(result, "; wishes that only guide are left out: no whole mesh was found with them");
     if (gproji_rule_is_on(form, &gproji_circularity_rule)) gproji_tell_spheres(form, result);
     if (gproji_rule_is_on(form, &gproji_conicality_rule)) gproji_tell_flat_cones(form, result);
@@ -23739,7 +23725,7 @@ GPROJI_INTERNAL gproj_result gproji_attempt(gproj_form *form, int32_t iterations
                                             const gproji_beginning *beginning, const gproj_solve_options *options) {
     bool begun = gproji_begin_solve(form, iterations, beginning, options);
     gproj_result result = form->solve.loop.result;
-    if (begun) form->solve.loop.earlier = earlier;
+    if (begun) form->solve.loop.attempt.earlier = earlier;
     if (begun) result = gproji_run_solve(form, -1);
     result.iterations += earlier;
     return result;
@@ -23771,76 +23757,77 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, doubl
     gproji_store_positions(form, form->before);
 }
 
+/* How a smooth attempt begins, numbered from 0. If the one before has ended on a spoiled mesh on which all holds, there
+   may be a whole one nearby or, in the end, one that is fairer; otherwise stiffer steps may lead on: *stiffer counts
+   these. */
+GPROJI_INTERNAL gproji_beginning gproji_choose_beginning(int32_t number, bool holds, int32_t *stiffer) {
+    if (number == 0) return gproji_beginnings[0];
+    if (number == 1 && holds) return gproji_beginnings[GPROJI_NEARBY];
+    return gproji_beginnings[number == GPROJI_ATTEMPTS_MOST - 1 ? GPROJI_FAIR : GPROJI_STIFF + (*stiffer)++];
+}
+
 /* A solve that may begin again in another way: the beginning of a path decides its end. The best end counts. All
    attempts share the time, and the smooth ones the iterations: if the first looks for the nearest mesh, those that
    follow have three times as many. */
 GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t iterations,
                                                  const gproj_solve_options *options) {
-    gproj_system *s = form->system;
-    double *x = gproj_system_values(s);
-    size_t count = (size_t)gproj_system_variable_count(s);
-    double *start = (double *)gproji_take(&form->heap, count, sizeof *start);
-    double *end =
-        (double *)gproji_take(&form->heap, count, sizeof *end); /* of the best attempt, if it was not the last */
-    double begun = gproji_now(s), load_scale = 1;               /* there, too */
-    bool started = form->statics && form->statics->started, here = true, away = false, wished;
+    const gproji_trying *known = &form->solve.loop.attempt;
+    double *x = gproj_system_values(form->system), *start, *end; /* end: of the best attempt, if it was not the last */
+    double begun = gproji_now(form->system), load_scale = 1;     /* there, too */
+    int64_t count = gproj_system_variable_count(form->system);
+    bool started = form->statics && form->statics->started, nearest = options->nearest;
+    bool here = true, away = false, wished; /* the best end is where x is; it is not one of the nearest solve */
     gproj_solve_options how = *options;
-    gproji_beginning beginning = gproji_beginnings[0];
     gproj_result result;
-    int32_t first = options->nearest ? 1 : 0, used, left, attempt = 1, stiffer = GPROJI_STIFF, k;
-    if (!start || !end) {
-        gproji_give(&form->heap, start, count, sizeof *start);
-        gproji_give(&form->heap, end, count, sizeof *end);
+    int32_t first = nearest ? 1 : 0, attempt = 1, stiffer = 0, used, left, k;
+    gproji_pool pool;
+    gproji_pool_start(&pool, &form->heap);
+    start = (double *)gproji_pool_copy(&pool, x, count, sizeof *x);
+    end = (double *)gproji_pool_take(&pool, count, sizeof *x);
+    if (pool.failed) {
+        gproji_pool_give_all(&pool);
         gproji_fail_memory(&form->error);
         return gproji_failed_result(&form->error);
     }
-    memcpy(start, x, count * sizeof *start);
-    result = gproji_attempt(form, iterations, 0, &beginning, &how);
+    result = gproji_attempt(form, iterations, 0, &gproji_beginnings[0], &how);
     used = result.iterations;
-    left = iterations - used;
-    wished = how.nearest && result.optimality > 0;
-    if (how.nearest)
-        left = GPROJI_NEAREST_SHARE * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_NEAREST_SHARE);
+    left = nearest ? GPROJI_NEAREST_SHARE * gproji_min(gproji_max(iterations, 0), INT32_MAX / GPROJI_NEAREST_SHARE)
+                   : iterations - used;
+    wished = nearest && result.optimality > 0;
     how.nearest = false;
-    for (; attempt < first + GPROJI_ATTEMPTS_MOST && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0 &&
-           !form->solve.futile && !form->solve.loop.steered;
-         ++attempt) {
-        bool holds = gproji_lack(&result) < 1 && !how.skip_closeness,
-             last = attempt == first + GPROJI_ATTEMPTS_MOST - 1;
+    for (; attempt < first + GPROJI_ATTEMPTS_MOST; ++attempt) {
+        bool holds = gproji_lack(&result) < 1 && !how.skip_closeness;
+        gproji_beginning beginning;
         gproj_result other;
-        /* 1. Is there enough left for another one? */
-        if (left < GPROJI_ATTEMPT_LEAST || (last && !holds)) break;
-        if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(s) - begun);
+        /* 1. Can another one end better, and is there enough left for it? */
+        if (result.outcome > GPROJ_STALLED || !(gproji_lack(&result) > 0) || known->futile || known->steered) break;
+        if (left < GPROJI_ATTEMPT_LEAST || (attempt == first + GPROJI_ATTEMPTS_MOST - 1 && !holds)) break;
+        if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(form->system) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
-        /* 2. Back to the start, forces included, and again: if all holds on a spoiled mesh, there may be a whole one
-           nearby, or, in the end, one that is fairer; otherwise stiffer steps may lead on. */
-        if (attempt == first)
-            k = 0;
-        else if (holds && attempt == first + 1)
-            k = GPROJI_NEARBY;
-        else
-            k = last ? GPROJI_FAIR : stiffer++;
-        beginning = gproji_beginnings[k];
-        beginning.fading = options->nearest;
-        beginning.left_out = beginning.left_out && !options->nearest;
-        if (here) memcpy(end, x, count * sizeof *end);
+        /* 2. Back to the start, forces included, and again. */
+        beginning = gproji_choose_beginning(attempt - first, holds, &stiffer);
+        beginning.fading = nearest;
+        beginning.left_out = beginning.left_out && !nearest;
+        if (here) memcpy(end, x, (size_t)count * sizeof *end);
         if (here && form->statics) load_scale = form->statics->load_scale;
         gproji_reset_mesh(form);
-        memcpy(x, start, count * sizeof *start);
+        memcpy(x, start, (size_t)count * sizeof *start);
         if (form->statics) form->statics->started = started;
         other = gproji_attempt(form, left, used, &beginning, &how);
         left -= other.iterations - used;
         used = other.iterations;
         /* 3. The better of the two, if they were asked for the same; its seconds are those of all attempts. */
-        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || form->solve.loop.steered ||
+        here = other.outcome == GPROJ_FAILED || other.outcome == GPROJ_CANCELLED || known->steered ||
                gproji_lack(&other) < gproji_lack(&result);
-        for (k = 0; k < GPROJ_PHASE_COUNT; ++k) {
-            double seconds = result.seconds[k] + other.seconds[k];
-            result.seconds[k] = other.seconds[k] = seconds;
-        }
-        if (here) result = other, away = options->nearest;
+        for (k = 0; k < GPROJ_PHASE_COUNT; ++k) other.seconds[k] += result.seconds[k];
+        if (here)
+            result = other, away = nearest;
+        else
+            memcpy(result.seconds, other.seconds, sizeof result.seconds);
     }
-    if (!here) gproji_return_to(form, end, load_scale, options->nearest && !away);
+    /* 4. Back to the best end, and what was tried in vain. */
+    if (!here) gproji_return_to(form, end, load_scale, nearest && !away);
+    gproji_pool_give_all(&pool);
     if (!here && !gproji_form_ready(form)) { /* a refresh has failed there */
         gproji_reset_mesh(form);
         result = gproji_failed_result(gproj_form_error(form));
@@ -23853,8 +23840,6 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         result.optimality = HUGE_VAL;
         gproji_tell(&result, "; no whole mesh was found at a minimum of the wishes, which have only guided here");
     }
-    gproji_give(&form->heap, start, count, sizeof *start);
-    gproji_give(&form->heap, end, count, sizeof *end);
     return result;
 }
 
@@ -23885,20 +23870,15 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
 GPROJ_API bool gproj_solve_is_on(const gproj_form *form) { return form && form->solve.on && gproji_form_ready(form); }
 
 GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error) {
-    size_t more;
+    bool ready = gproji_form_ready(form), on = gproj_solve_is_on(form) && !gproji_is_solving(form->system);
+    size_t more = on ? gproji_foretell(&form->solve.loop) : 0;
     gproji_error_clear(error);
-    if (form && !gproji_form_ready(form)) {
+    if (on && gproji_form_ready(form)) return gproji_add_bytes(gproj_form_memory(form).used, more);
+    if (form && (on || !ready))
         gproji_pass_on(error, gproj_form_error(form));
-        return 0;
-    }
-    if (!gproj_solve_is_on(form) || gproji_is_solving(form->system)) {
+    else
         gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "solve memory: ask between gproj_solve_begin and the end of that solve, not in a callback");
-        return 0;
-    }
-    more = gproji_foretell(&form->solve.loop);
-    if (gproji_form_ready(form)) return gproji_add_bytes(gproj_form_memory(form).used, more);
-    gproji_pass_on(error, gproj_form_error(form));
     return 0;
 }
 
@@ -24424,15 +24404,14 @@ GPROJI_INTERNAL double gproji_follow_handles(gproj_drag *drag, double most, doub
 
 /* Can handles move? Else drag->error says why not. */
 GPROJI_INTERNAL bool gproji_drag_is_usable(gproj_drag *drag) {
-    if (!gproji_form_ready(drag->form)) {
+    if (!gproji_form_ready(drag->form))
         gproji_pass_on(&drag->error, gproj_form_error(drag->form));
-    } else if (drag->released) {
+    else if (drag->released)
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: the handles have been released; end or cancel it");
-    } else if (gproji_structure_of(drag->form->system) != drag->structure) {
+    else if (gproji_structure_of(drag->form->system) != drag->structure)
         gproji_fail(&drag->error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1,
                     "drag: variables, groups or rows were added to the form since gproj_drag_begin; end or cancel it");
-    }
     return drag->error.code == GPROJ_OK;
 }
 
@@ -24802,19 +24781,16 @@ GPROJ_API int32_t gproj_find_reach(gproj_form *form, int32_t vertex, double reac
     /* Dijkstra (1959). vertices[0 .. done - 1] are settled, those up to `seen` are the border, without an order: within
        a reach that a hand can drag it is short. */
     for (; done < seen; ++done) {
-        int32_t best = done, at, h, first;
+        int32_t best = done, at, h;
         for (k = done + 1; k < seen; ++k)
             if (distance[vertices[k]] < distance[vertices[best]]) best = k;
         at = vertices[best], vertices[best] = vertices[done], vertices[done] = at;
-        first = h = mesh->vertex_halfedge[at];
-        while (h >= 0) {
+        for (h = mesh->vertex_halfedge[at]; h >= 0; h = gproji_turn_right(mesh, h)) {
             int32_t to = mesh->origin[mesh->twin[h]];
             double d =
                 distance[at] + gproji_distance3(mesh->position + 3 * (size_t)at, mesh->position + 3 * (size_t)to);
             if (d < reach && distance[to] == HUGE_VAL) vertices[seen++] = to;
             if (d < reach && d < distance[to]) distance[to] = d;
-            h = mesh->next[mesh->twin[h]];
-            if (h == first) break;
         }
     }
     for (count = 0; count < done; ++count) {
