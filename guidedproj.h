@@ -4873,12 +4873,6 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
 
 /* -- the smallest separator in a band -- */
 
-/* A weight as a capacity: in units of the common divisor or, if these are many, in fractions of the largest weight. */
-GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
-    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
-    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
-}
-
 /* Builds the network for the band of coordinates from[0]..from[1]-1. False: no memory, or arcs beyond their type. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
@@ -4930,7 +4924,10 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         int32_t v = band->id[i], next;
         const int32_t *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
         band->load[i] = band->ends[i] = 0;
-        band->capacity[i] = gproji_band_capacity(nd->here.weight[v], divisor, largest);
+        /* The weight in units of the common divisor or, if these are many, in fractions of the largest weight. */
+        band->capacity[i] = nd->here.weight[v] / divisor;
+        if (largest / divisor > GPROJI_BAND_UNITS)
+            band->capacity[i] = gproji_max(1, (int32_t)((int64_t)nd->here.weight[v] * GPROJI_BAND_UNITS / largest));
         for (band->start[i] = e; list < end; ++list) {
             next = nd->number[*list];
             if (next >= 0)
@@ -23379,8 +23376,6 @@ GPROJI_INTERNAL double gproji_largest_wish(const gproj_form *form) {
     return largest;
 }
 
-GPROJI_INTERNAL bool gproji_has_active_wish(const gproj_form *form) { return gproji_largest_wish(form) > 0; }
-
 /* Weights of a step's differences along edges, and of a vertex's displacement relative to that. With more of the latter
    meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
@@ -23527,7 +23522,7 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
    has left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
-    bool others = gproji_has_active_wish(form), wanted = !skip && !others, nearby = beginning->closeness > 0;
+    bool others = gproji_largest_wish(form) > 0, wanted = !skip && !others, nearby = beginning->closeness > 0;
     int32_t half = gproji_max(1, iterations - iterations / 2), i;
     gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
     const gproji_part *part;
@@ -23594,6 +23589,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
     bool started = form->statics && form->statics->started;
+    double wished = gproji_largest_wish(form);
     const gproji_part *part;
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
@@ -23605,11 +23601,11 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
-    gproji_begin_forces(form, nearest, gproji_has_active_wish(form) || beginning->closeness + beginning->fairness > 0);
+    gproji_begin_forces(form, nearest, wished + beginning->closeness + beginning->fairness > 0);
     guided = gproji_set_default_guidance(form, iterations, beginning, skip_closeness || smooth, nearest);
     /* Smooth steps are measured by their smoothness (see >>loop), and by how they change forces. */
     metric = smooth && !skip_closeness;
-    anchored = metric && beginning->stiffness <= 1 && !gproji_has_active_wish(form);
+    anchored = metric && beginning->stiffness <= 1 && !(wished > 0);
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
@@ -23635,8 +23631,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
     solve->loop.wishes.last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wishes.last = gproji_min(9, solve->loop.wishes.last);
-    if (beginning->fading && gproji_has_active_wish(form))
-        solve->loop.wishes.fading = gproji_nearest_scale / gproji_largest_wish(form);
+    if (beginning->fading && wished > 0) solve->loop.wishes.fading = gproji_nearest_scale / wished;
     for (i = 0; beginning->left_out && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         if (g->row_count > 0 && g->schedule.weight > 0 && gproji_only_guides(&solve->loop, g))
@@ -23699,7 +23694,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
-    if (gproji_has_active_wish(form) && !loop->attempt.left_out && !gproji_is_held(form))
+    if (gproji_largest_wish(form) > 0 && !loop->attempt.left_out && !gproji_is_held(form))
         gproji_tell(result, "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference");
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
