@@ -2505,7 +2505,7 @@ GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capaci
     void *moved;
     if (needed <= *capacity) return block;
     if (wanted < needed) wanted = needed;
-    moved = gproji_retake(heap, block, block ? *capacity : 0, wanted, size);
+    moved = gproji_retake(heap, block, *capacity, wanted, size);
     if (!moved) return block;
     *capacity = wanted;
     return moved;

@@ -835,8 +835,10 @@ GPROJT_TEST(refusals) {
     gproj_error error;
     GPROJT_REQUIRE(offset != NULL);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(NULL, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(error.message, "NULL") != NULL);
     GPROJT_CHECK(!gproj_mesh_face_offset(NULL, 1, NULL, NULL));
     GPROJT_CHECK(!gproj_mesh_face_offset(mesh, NAN, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(strstr(error.message, "distance") != NULL);
     GPROJT_CHECK(error.place == GPROJ_PLACE_NONE && error.index == -1); /* of no element */
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, INFINITY, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, 1e300, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
