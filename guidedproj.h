@@ -22176,7 +22176,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     part = gproji_new_part(form, &gproji_guard_rule, count);
     if (!part) return;
     part->data = gproji_part_take(part, 3 * (int64_t)count, sizeof(double));
-    if (!part->data || gproji_add_group(part, 0) < 0) return;
+    if (gproji_add_group(part, 0) < 0) return;
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->element[count++] = f;
