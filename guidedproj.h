@@ -2505,7 +2505,7 @@ GPROJI_INTERNAL void *gproji_grow(gproji_heap *heap, void *block, size_t *capaci
     void *moved;
     if (needed <= *capacity) return block;
     if (wanted < needed) wanted = needed;
-    moved = gproji_retake(heap, block, block ? *capacity : 0, wanted, size);
+    moved = gproji_retake(heap, block, *capacity, wanted, size);
     if (!moved) return block;
     *capacity = wanted;
     return moved;
@@ -22174,7 +22174,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     part = gproji_new_part(form, &gproji_guard_rule, count);
     if (!part) return;
     part->data = gproji_part_take(part, 3 * (int64_t)count, sizeof(double));
-    if (!part->data || gproji_add_group(part, 0) < 0) return;
+    if (gproji_add_group(part, 0) < 0) return;
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->element[count++] = f;

@@ -516,7 +516,7 @@ GPROJT_TEST(meshes_without_extent) {
     int shape;
     for (shape = 0; shape < GPROJT_SHAPES; ++shape) {
         gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, 4));
-        double *before;
+        double *before, mean;
         gproj_measures m;
         int32_t i;
         for (i = 0; i < 3 * mesh->vertex_count; ++i) mesh->position[i] = 2;
@@ -525,6 +525,7 @@ GPROJT_TEST(meshes_without_extent) {
         gprojt_check_numbers(&m);
         GPROJT_CHECK(m.area == 0 && m.degenerate_faces == mesh->face_count && m.planarity_max < 1e-15 &&
                      m.turned_faces == 0);
+        GPROJT_CHECK(gproj_measure_planarity(mesh, NULL, &mean) < 1e-15 && mean < 1e-15);
         mesh->position[0] = 3;
         m = gproj_measure(mesh, before, NULL);
         gprojt_check_numbers(&m);
@@ -644,6 +645,21 @@ GPROJT_TEST(damage_begins_where_it_is_said) {
         gproj_mesh_destroy(mesh);
     }
     GPROJT_CHECK(found[0] > 50 && found[1] > 50 && found[2] > 50);
+}
+
+/* Twice as large as before, and the last square sheared: no edge is short, and 0.08 would be enough of an area of 1. */
+GPROJT_TEST(collapsed_beside_the_growth) {
+    gproj_mesh *mesh = gprojt_three_squares();
+    double original[24];
+    gproj_spoiled found;
+    int32_t i;
+    memcpy(original, mesh->position, sizeof original);
+    for (i = 0; i < 24; ++i) mesh->position[i] *= 2;
+    mesh->position[9] = mesh->position[21] = 4.04;
+    mesh->position[10] = 2, mesh->position[22] = 4;
+    found = gproj_measure_spoiled(mesh, original);
+    GPROJT_CHECK(found.collapsed_faces == 1 && found.total == 1 && found.element == 2);
+    gproj_mesh_destroy(mesh);
 }
 
 /* What was so before does not count: crossed, folded and short from the beginning; neither does a change of scale. */
@@ -853,6 +869,7 @@ int main(void) {
     GPROJT_RUN(degenerate_edges);
     GPROJT_RUN(each_kind_of_damage);
     GPROJT_RUN(damage_begins_where_it_is_said);
+    GPROJT_RUN(collapsed_beside_the_growth);
     GPROJT_RUN(old_damage_does_not_count);
     GPROJT_RUN(crossed_pentagons_are_damage);
     GPROJT_RUN(crossed_faces_as_in_measure);

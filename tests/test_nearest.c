@@ -75,6 +75,16 @@ GPROJT_TEST(nearest_on_ellipsoids) {
     }
 }
 
+/* What breaks symmetries is a part of the first step, which is short near the ellipsoid. */
+GPROJT_TEST(short_first_steps) {
+    static const double a[3] = {1, 1, 1}, start[3] = {0, 0, 1.00001};
+    gproj_system *s = gprojt_one_point(start, start, 1);
+    gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+    gprojt_solve_nearest(s, 1);
+    GPROJT_CHECK(gprojt_far(gproj_system_values(s), start) < 1e-4);
+    gproj_system_destroy(s);
+}
+
 /* The curve x^2 + y^2 = 1, z = x y + 0.3 x^2 in closed form, scanned for its nearest point. */
 static double gprojt_curve_distance(double angle, const double p[3], double q[3]) {
     q[0] = cos(angle), q[1] = sin(angle), q[2] = q[0] * q[1] + 0.3 * q[0] * q[0];
@@ -1037,6 +1047,7 @@ GPROJT_TEST(every_allocation_fails_once) {
 
 int main(void) {
     GPROJT_RUN(nearest_on_ellipsoids);
+    GPROJT_RUN(short_first_steps);
     GPROJT_RUN(nearest_on_two_quadrics);
     GPROJT_RUN(nearest_in_a_ball);
     GPROJT_RUN(bounds_let_go);

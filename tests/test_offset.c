@@ -769,6 +769,23 @@ GPROJT_TEST(offsets_of_stray_vertices_are_not_measured) {
     gproj_mesh_destroy(mesh);
 }
 
+/* One triangle: what lies behind its boundary is no face, which would be seen from the other side. */
+GPROJT_TEST(faces_are_measured_and_no_holes) {
+    static const double p[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    static const int32_t degree[] = {3}, corner[] = {0, 1, 2};
+    gproj_mesh *mesh = gproj_mesh_create(3, p, 1, degree, corner, NULL, NULL);
+    gproj_mesh *moved = gproj_mesh_copy(mesh, NULL, NULL);
+    gproj_offset_measures m;
+    int32_t i;
+    GPROJT_REQUIRE(mesh && moved);
+    for (i = 0; i < 3; ++i) moved->position[3 * i + 2] = 0.25;
+    m = gproj_measure_offset(mesh, moved);
+    GPROJT_NEAR(m.face_distance_min, 0.25, 1e-15);
+    GPROJT_NEAR(m.face_distance_max, 0.25, 1e-15);
+    gproj_mesh_destroy(moved);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Meshes of equally many vertices and half-edges, but of other edges, or with a face in the place of a hole, are no
    offsets of each other. */
 GPROJT_TEST(meshes_of_other_faces_are_no_offsets) {
@@ -835,8 +852,10 @@ GPROJT_TEST(refusals) {
     gproj_error error;
     GPROJT_REQUIRE(offset != NULL);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(NULL, 1, NULL, &error) && error.code == GPROJ_ERROR_ARGUMENT);
+    GPROJT_CHECK(strstr(error.message, "NULL") != NULL);
     GPROJT_CHECK(!gproj_mesh_face_offset(NULL, 1, NULL, NULL));
     GPROJT_CHECK(!gproj_mesh_face_offset(mesh, NAN, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(strstr(error.message, "distance") != NULL);
     GPROJT_CHECK(error.place == GPROJ_PLACE_NONE && error.index == -1); /* of no element */
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, INFINITY, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
     GPROJT_CHECK(!gproj_mesh_vertex_offset(mesh, 1e300, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
@@ -905,6 +924,7 @@ int main(void) {
     GPROJT_RUN(offsets_scale_with_the_mesh);
     GPROJT_RUN(offsets_are_measured);
     GPROJT_RUN(offsets_of_stray_vertices_are_not_measured);
+    GPROJT_RUN(faces_are_measured_and_no_holes);
     GPROJT_RUN(meshes_of_other_faces_are_no_offsets);
     GPROJT_RUN(faces_without_area_stay);
     GPROJT_RUN(supports);

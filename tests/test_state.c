@@ -1223,6 +1223,29 @@ static void gprojt_leave_rows(void *user, gproj_system *s, int32_t group, const 
     (void)user, (void)s, (void)group, (void)progress;
 }
 
+/* A bump beside a dent of the same size, and the other way round: only the vertices' own coordinates tell the two meshes
+   apart. */
+GPROJT_TEST(states_of_mirrored_meshes) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(3, 3));
+    uint8_t *state = NULL;
+    size_t size = 0;
+    int32_t way, v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = 0;
+    for (way = 0; way < 2; ++way) {
+        gproj_form *form;
+        mesh->position[3 * 5 + 2] = way ? -0.25 : 0.25;
+        mesh->position[3 * 6 + 2] = way ? 0.25 : -0.25;
+        form = gproj_form_create(mesh, NULL);
+        if (way == 0)
+            state = gprojt_save(form, &size);
+        else
+            gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+        gproj_form_destroy(form);
+    }
+    free(state);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Forms whose only difference is one property of a group, an element, or how terms are shared out among rows. */
 GPROJT_TEST(states_of_other_groups) {
     static const struct {
@@ -1381,6 +1404,7 @@ int main(void) {
     GPROJT_RUN(safeguards_go_on);
     GPROJT_RUN(states_of_others);
     GPROJT_RUN(states_of_other_variables);
+    GPROJT_RUN(states_of_mirrored_meshes);
     GPROJT_RUN(states_of_other_groups);
     GPROJT_RUN(restored_without_an_analysis);
     GPROJT_RUN(what_cannot_be_saved);
