@@ -19835,16 +19835,6 @@ GPROJI_INTERNAL void gproji_add_ring_differences(gproji_part *part, int32_t cent
     gproji_add_difference(part, &d);
 }
 
-/* Fills form->work.ring with an interior vertex's neighbours by their first variables, returns their number; 0 for
-   other vertices. */
-GPROJI_INTERNAL int32_t gproji_vertex_ring(gproj_form *form, int32_t vertex) {
-    int32_t count, i;
-    if (form->mesh->vertex_halfedge[vertex] < 0 || gproj_mesh_is_boundary_vertex(form->mesh, vertex)) return 0;
-    count = gproj_mesh_one_ring(form->mesh, vertex, form->work.ring, form->work.ring_size);
-    for (i = 0; i < count; ++i) form->work.ring[i] *= 3;
-    return count;
-}
-
 GPROJI_RULE(gproji_fairness_rule, "fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 GPROJI_RULE(gproji_boundary_fairness_rule, "boundary fairness", GPROJ_WISH, GPROJ_PLACE_VERTEX, NULL);
 
@@ -19896,8 +19886,11 @@ GPROJI_INTERNAL int32_t gproji_add_fairness(gproj_form *form, const gproji_rule 
     if (inside && !tangential)
         gproji_expect_group(form, part->group, 0, 6 * vertices, 0, 3 * (2 * (size_t)mesh->edge_count + 2 * vertices));
     for (v = 0; inside && v < mesh->vertex_count; ++v) {
-        int32_t count = gproji_vertex_ring(form, v);
-        if (count) gproji_add_ring_differences(part, 3 * v, count, v);
+        int32_t *ring = form->work.ring, count, i;
+        if (mesh->vertex_halfedge[v] < 0 || gproj_mesh_is_boundary_vertex(mesh, v)) continue;
+        count = gproj_mesh_one_ring(mesh, v, ring, form->work.ring_size);
+        for (i = 0; i < count; ++i) ring[i] *= 3; /* by their first variables */
+        gproji_add_ring_differences(part, 3 * v, count, v);
     }
     for (v = 0; !tangential && v < mesh->vertex_count; ++v) {
         if (!gproji_select_gliding(form, v)) continue;
@@ -22174,7 +22167,7 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
     part = gproji_new_part(form, &gproji_guard_rule, count);
     if (!part) return;
     part->data = gproji_part_take(part, 3 * (int64_t)count, sizeof(double));
-    if (gproji_add_group(part, 0) < 0) return;
+    if (!part->data || gproji_add_group(part, 0) < 0) return;
     for (f = 0, count = 0; f < mesh->face_count; ++f) {
         if (mesh->face_degree[f] > GPROJI_GUARD_DEGREE) continue;
         part->element[count++] = f;
