@@ -4873,6 +4873,12 @@ GPROJI_INTERNAL bool gproji_band_augment(gproji_band *band) {
 
 /* -- the smallest separator in a band -- */
 
+/* A weight as a capacity: in units of the common divisor or, if these are many, in fractions of the largest weight. */
+GPROJI_INLINE int32_t gproji_band_capacity(int32_t weight, int32_t divisor, int32_t largest) {
+    if (largest / divisor <= GPROJI_BAND_UNITS) return weight / divisor;
+    return gproji_max(1, (int32_t)((int64_t)weight * GPROJI_BAND_UNITS / largest));
+}
+
 /* Builds the network for the band of coordinates from[0]..from[1]-1. False: no memory, or arcs beyond their type. */
 GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cut, const int32_t from[2]) {
     gproji_band *band = &nd->band;
@@ -4924,10 +4930,7 @@ GPROJI_INTERNAL bool gproji_nd_build_band(gproji_nd *nd, const gproji_nd_cut *cu
         int32_t v = band->id[i], next;
         const int32_t *list = nd->here.adjacent + nd->here.from[v], *end = list + nd->here.inner[v];
         band->load[i] = band->ends[i] = 0;
-        /* The weight in units of the common divisor or, if these are many, in fractions of the largest weight. */
-        band->capacity[i] = nd->here.weight[v] / divisor;
-        if (largest / divisor > GPROJI_BAND_UNITS)
-            band->capacity[i] = gproji_max(1, (int32_t)((int64_t)nd->here.weight[v] * GPROJI_BAND_UNITS / largest));
+        band->capacity[i] = gproji_band_capacity(nd->here.weight[v], divisor, largest);
         for (band->start[i] = e; list < end; ++list) {
             next = nd->number[*list];
             if (next >= 0)
@@ -10580,11 +10583,6 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
     return guiding ? 0 : g->schedule.last;
 }
 
-/* Is this such a wish that ends before the last iteration? */
-GPROJI_INTERNAL bool gproji_only_guides(const gproji_loop *loop, const gproji_group *g) {
-    return gproji_is_callers_wish(g) && gproji_last_iteration(loop, g) < loop->iterations;
-}
-
 /* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
@@ -10594,7 +10592,7 @@ GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_gr
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
     if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
-    if (loop->attempt.left_out && gproji_only_guides(loop, g)) return 0;
+    if (loop->attempt.left_out && last < loop->iterations && gproji_is_callers_wish(g)) return 0;
     return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
 }
 
@@ -23627,7 +23625,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     if (beginning->fading && wished > 0) solve->loop.wishes.fading = gproji_nearest_scale / wished;
     for (i = 0; beginning->left_out && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (g->row_count > 0 && g->schedule.weight > 0 && gproji_only_guides(&solve->loop, g))
+        if (g->row_count > 0 && g->schedule.weight > 0 && gproji_is_callers_wish(g) &&
+            gproji_last_iteration(&solve->loop, g) < iterations)
             solve->loop.attempt.left_out = true;
     }
     return solve->on;
