@@ -21794,7 +21794,8 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     gproj_error own;
     double *x, mean;
     int32_t v, e;
-    gproji_error_clear(error = error ? error : &own);
+    error = error ? error : &own;
+    gproji_error_clear(error);
     if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
         !gproji_take_balance(form, error, &p))
         return error->code;
@@ -22476,12 +22477,12 @@ GPROJI_INTERNAL bool gproji_refuse_corners(void *user, const double *before, con
         const double *size = gproji_corners_of(part)->size;
         double is[3], was[3], area[3], now, had;
         gproji_corner_normal(form, x, before, f, is);
-        gproji_corner_normal(form, before, before, f, was);
         for (c = 0, h = mesh->face_halfedge[f]; c < mesh->face_degree[f]; ++c, h = mesh->next[h]) {
             gproji_corner_area(mesh, x, h, area);
             now = gproji_dot3(area, is);
             if (!(size[h] > 0) || now >= gproji_corner_kept * size[h]) continue;
             gproji_corner_area(mesh, before, h, area);
+            gproji_corner_normal(form, before, before, f, was);
             had = gproji_dot3(area, was);
             if (had > 0 && now < gproji_corner_kept * had) return true;
         }
@@ -22709,11 +22710,10 @@ typedef struct gproji_spread {
     int32_t *queue;      /* vertices in the plane that are not held */
     const double *value; /* 3 per vertex: the place of a held one */
     double point[3], normal[3];
-    int32_t plane; /* number of this one, from 1 */
-    int32_t count; /* in the queue */
-    int32_t
-        vertex; /* to be in the plane, but held off it, the farthest one, or on a side that avoids it; -1: none is, */
-    double off; /* and how far off it is */
+    int32_t plane;  /* number of this one, from 1 */
+    int32_t count;  /* in the queue */
+    int32_t vertex; /* the farthest held one off the plane it must share, or one whose side avoids it; -1: none */
+    double off;     /* and how far off */
 } gproji_spread;
 
 static const double gproji_plane_near = 1e-6, gproji_plane_far = 1e-3; /* mean edges; in the plane, and certainly not */
@@ -23516,8 +23516,8 @@ GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t it
     bool others = gproji_largest_wish(form) > 0, wanted = !skip && !others, nearby = beginning->closeness > 0;
     int32_t half = gproji_max(1, iterations - iterations / 2), i;
     gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
-    const gproji_part *part;
     gproj_schedule fairness = gproj_fade(beginning->fairness, 20);
+    const gproji_part *part;
     if (nearby) schedule = gproj_fade(beginning->closeness, 20);
     schedule.decay = nearby ? 0.7 : 0.3;
     if (nearest && wanted) schedule = gproj_keep(1);

@@ -1508,6 +1508,17 @@ GPROJT_TEST(planes_without_carriers_are_named) {
     }
 }
 
+/* Flat faces that carry snow, on a supported boundary. */
+static gproj_form *gprojt_flat_under_snow(gproj_mesh *mesh) {
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_loads loads;
+    memset(&loads, 0, sizeof loads);
+    loads.snow = 1;
+    gproj_add_planarity(form, 1);
+    gprojt_add_supported(form, mesh, &loads, false);
+    return form;
+}
+
 /* Vertices that are let go of a gliding boundary need not be in its plane; without them no plane spreads. */
 GPROJT_TEST(planes_end_where_sides_are_let_go) {
     static const int32_t sides[12] = {1, 2, 3, 5, 9, 10, 14, 15, 19, 21, 22, 23}; /* all but the corners */
@@ -1515,14 +1526,9 @@ GPROJT_TEST(planes_end_where_sides_are_let_go) {
     int freed;
     for (freed = 0; freed < 2; ++freed) {
         gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
-        gproj_form *form = gproj_form_create(mesh, NULL);
-        gproj_loads loads;
+        gproj_form *form = gprojt_flat_under_snow(mesh);
         gproj_result result;
         int32_t group;
-        memset(&loads, 0, sizeof loads);
-        loads.snow = 1;
-        gproj_add_planarity(form, 1);
-        gprojt_add_supported(form, mesh, &loads, false);
         group = gproj_add_gliding_boundary(form, 1);
         if (freed) GPROJT_CHECK(gproj_set_element_weights(form, group, 12, sides, none) == GPROJ_OK);
         result = gproj_solve(form, 1, NULL);
@@ -1612,13 +1618,8 @@ GPROJT_TEST(edges_off_the_plane_carry) {
     int k;
     for (k = 0; k < 5; ++k) {
         gproj_mesh *mesh = gprojt_graph(4, gprojt_bump);
-        gproj_form *form = gproj_form_create(mesh, NULL);
-        gproj_loads loads;
+        gproj_form *form = gprojt_flat_under_snow(mesh);
         gproj_result result;
-        memset(&loads, 0, sizeof loads);
-        loads.snow = 1;
-        gproj_add_planarity(form, 1);
-        gprojt_add_supported(form, mesh, &loads, false);
         gproj_add_fixed(form, k < 4 ? 3 : 5, corner[k], 1);
         result = gproj_solve(form, 0, NULL);
         GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT);
