@@ -13057,14 +13057,16 @@ GPROJ_API int32_t gproj_mesh_valence(const gproj_mesh *mesh, int32_t vertex) {
     return gproj_mesh_one_ring(mesh, vertex, NULL, 0);
 }
 
-/* The half-edge from vertex a to vertex b; -1: they have no edge. */
+/* The half-edge from vertex a to vertex b; -1: they have no edge. Goes round both at once, so that time depends on the
+   lower valence only. */
 GPROJI_INTERNAL int32_t gproji_halfedge_between(const gproj_mesh *mesh, int32_t a, int32_t b) {
-    int32_t start = mesh->vertex_halfedge[a], h = start;
-    if (start < 0) return -1;
+    int32_t from_a = mesh->vertex_halfedge[a], from_b = mesh->vertex_halfedge[b], h = from_a, g = from_b;
+    if (h < 0 || g < 0) return -1;
     do {
         if (mesh->origin[h ^ 1] == b) return h;
-        h = gproji_rotate(mesh, h);
-    } while (h != start);
+        if (mesh->origin[g ^ 1] == a) return g ^ 1;
+        h = gproji_rotate(mesh, h), g = gproji_rotate(mesh, g);
+    } while (h != from_a && g != from_b);
     return -1;
 }
 

@@ -890,6 +890,31 @@ GPROJT_TEST(a_face_of_very_many_corners) {
     free(xy);
 }
 
+/* Very many quads around a vertex, each with a diagonal that might be an edge of it: likewise. */
+GPROJT_TEST(a_vertex_of_very_many_faces) {
+    enum {
+        MANY = 100000
+    };
+    double *x = (double *)calloc(3 * (2 * MANY + 1), sizeof(double));
+    int32_t *corner = (int32_t *)malloc(5 * MANY * sizeof(int32_t)), *degree = corner + 4 * MANY, i;
+    gproj_mesh *mesh;
+    gproj_edit *e;
+    for (i = 0; i < 2 * MANY; ++i) {
+        x[3 * i + 3] = cos(3.141592653589793 * i / MANY), x[3 * i + 4] = sin(3.141592653589793 * i / MANY);
+        corner[2 * i] = i % 2 ? i + 1 : 0, corner[2 * i + 1] = i % 2 ? (i + 1) % (2 * MANY) + 1 : i + 1;
+        degree[i / 2] = 4;
+    }
+    mesh = gproj_mesh_create(2 * MANY + 1, x, MANY, degree, corner, NULL, NULL);
+    e = gproj_edit_create(mesh, NULL, NULL);
+    GPROJT_CHECK(e && gproj_edit_triangulate(e, -1, NULL) == MANY);
+    for (i = 0; e && i < MANY; ++i) /* from the vertex to the opposite corners, not across */
+        GPROJT_CHECK(gproj_edit_edge(e, 0, 2 * i + 1) >= 0 && gproj_edit_edge(e, 2 * i + 2, 0) >= 0);
+    gproj_edit_destroy(e);
+    gproj_mesh_destroy(mesh);
+    free(corner);
+    free(x);
+}
+
 /* All triangulations of small convex polygons, by brute force: none is better. */
 static double gprojt_cost(const double *xy, int32_t a, int32_t b, int32_t c) {
     double ux = xy[2 * b] - xy[2 * a], uy = xy[2 * b + 1] - xy[2 * a + 1], vx = xy[2 * c] - xy[2 * b],
@@ -1565,6 +1590,7 @@ int main(void) {
     GPROJT_RUN(polygons_that_are_not_convex);
     GPROJT_RUN(combs_spirals_darts);
     GPROJT_RUN(a_face_of_very_many_corners);
+    GPROJT_RUN(a_vertex_of_very_many_faces);
     GPROJT_RUN(triangles_are_the_best);
     GPROJT_RUN(triangles_are_turned_least);
     GPROJT_RUN(diagonals_that_are_edges);
