@@ -16708,8 +16708,9 @@ GPROJI_INTERNAL int32_t gproji_bound_chain(const gproj_mesh *mesh, const double 
 }
 
 /* Does a side cross another, seen along the normal to the face's least-squares plane? The vectorial area would not do:
-   a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with disjoint boxes are left
-   out, the others halved until short. So an outline takes O(n log n) unless it is crumpled at all scales. */
+   a symmetric bow-tie has none. Compares the outline with itself as pairs of chains; those with boxes that overlap
+   nowhere or touch only are left out, the others halved until short. So an outline takes O(n log n) unless it is
+   crumpled at all scales. */
 GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *position, int32_t face,
                                        const double axis[3]) {
     gproji_chain stack[GPROJI_CHAIN_DEPTH][2], part[2];
@@ -16725,7 +16726,7 @@ GPROJI_INTERNAL bool gproji_is_bow_tie(const gproj_mesh *mesh, const double *pos
     while (depth > 0) {
         const gproji_chain a = stack[--depth][0], b = stack[depth][1];
         bool same = a.first == b.first;
-        if (!same && (a.low[0] > b.high[0] || a.high[0] < b.low[0] || a.low[1] > b.high[1] || a.high[1] < b.low[1]))
+        if (!same && (a.low[0] >= b.high[0] || a.high[0] <= b.low[0] || a.low[1] >= b.high[1] || a.high[1] <= b.low[1]))
             continue;
         if (a.count > most || b.count > most) {
             const gproji_chain *whole = a.count >= b.count ? &a : &b;

@@ -783,6 +783,27 @@ GPROJT_TEST(bow_ties_with_many_corners) {
     GPROJT_CHECK(crossed > all / 5 && crossed < 4 * all / 5);
 }
 
+/* Half the corners of an outline at one place, where chains of sides only touch: comparing each side with each would
+   take minutes. */
+GPROJT_TEST(very_many_corners_at_one_place) {
+    enum {
+        MANY = 150000
+    };
+    double *x = (double *)calloc(3 * MANY, sizeof(double));
+    gproj_mesh *mesh;
+    int32_t i;
+    for (i = 0; i < MANY; ++i) {
+        double angle = 6.283185307179586 * (i < MANY / 2 ? i : MANY / 2) / MANY;
+        x[3 * i] = cos(angle), x[3 * i + 1] = sin(angle);
+    }
+    mesh = gprojt_outline_mesh(MANY, x);
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).bow_tie_faces == 0);
+    mesh->position[3] = -1.2, mesh->position[4] = -0.5; /* its sides cross the one that is long */
+    GPROJT_CHECK(gproj_measure(mesh, NULL, NULL).bow_tie_faces == 1);
+    gproj_mesh_destroy(mesh);
+    free(x);
+}
+
 /* A prism with n sides: at each corner the normals of a cap and of two sides. Its caps are large faces. */
 static gproj_mesh *gprojt_prism(int32_t n) {
     gprojt_soup s;
@@ -884,6 +905,7 @@ int main(void) {
     GPROJT_RUN(sides_that_touch);
     GPROJT_RUN(bow_ties_without_area);
     GPROJT_RUN(bow_ties_with_many_corners);
+    GPROJT_RUN(very_many_corners_at_one_place);
     GPROJT_RUN(faces_with_very_many_corners);
     GPROJT_RUN(turned_and_degenerate_faces);
     GPROJT_RUN(deviation_and_displacement);
