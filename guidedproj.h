@@ -18175,7 +18175,7 @@ GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool
     return true;
 }
 
-/* Predicts the cost (irregular vertices, sides that fit no grid, see gproji_outline) of the part from place i to place
+/* Predicts the cost (irregular vertices, sides that fit no grid) of the part from place i to place
    j closed by a cut, whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of edges of
    the cut, which is 0 unless the part is cut again. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
@@ -18262,9 +18262,9 @@ GPROJI_INTERNAL gproji_cut_line gproji_find_cut(const gproji_outline *o) {
     bool many = o->before[o->count] > GPROJI_PATCH_SIDES, reflex = o->reflex[o->count] > 0;
     int32_t i, j, pass;
     if (!reflex && !many) return best;
-    for (pass = 0; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* other corners only if no reflex one has a cut */
+    for (pass = !reflex; pass < 2 && !(best.cost < HUGE_VAL); ++pass) /* others only if no reflex one has a cut */
         for (i = 0; i < o->count; ++i) {
-            if (!(o->entry[i] & 1) || (reflex && pass == 0 && o->angle[i] <= GPROJI_REFLEX)) continue;
+            if (!(o->entry[i] & 1) || (pass == 0 && o->angle[i] <= GPROJI_REFLEX)) continue;
             for (j = 0; j < o->count; ++j)
                 if (j != i) gproji_try_cut(o, gproji_min(i, j), gproji_max(i, j), &best);
         }
