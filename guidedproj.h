@@ -1233,7 +1233,7 @@ GPROJ_API gproj_mesh *gproj_mesh_vertex_offset(const gproj_mesh *mesh, double di
    the normals n_k of the faces around the vertex. Exact for conical meshes: there x = a / cos(angle) with the vertex's
    axis a, and edges between two faces are parallel; for others in the least-squares sense. At the boundary, n_1'x =
    n_2'x = 1 from two faces or n'x = 1 from one leaves freedom, which makes boundary edges as parallel as possible.
-   Vertices without a face that has an area stay. */
+   Vertices without a face stay; those whose faces have no area go with their neighbours. */
 GPROJ_API gproj_mesh *gproj_mesh_face_offset(const gproj_mesh *mesh, double distance, const gproj_host *host,
                                              gproj_error *error);
 /* Makes the panels between a mesh and an offset of it: face e is the quad v_i v_j o_j o_i for edge e with half-edge 2e

@@ -807,7 +807,7 @@ GPROJT_TEST(meshes_of_other_faces_are_no_offsets) {
     }
 }
 
-/* A vertex whose only face has no area stays where it is. */
+/* A vertex whose only face has no area stays where it is, but for edges to others that move. */
 GPROJT_TEST(faces_without_area_stay) {
     gprojt_soup s;
     gproj_mesh *mesh, *offset;
@@ -821,6 +821,17 @@ GPROJT_TEST(faces_without_area_stay) {
     offset = gproj_mesh_face_offset(mesh, 0.5, NULL, NULL);
     GPROJT_REQUIRE(offset != NULL);
     for (v = 0; v < 7; ++v) GPROJT_NEAR(offset->position[3 * v + 2], v < 4 ? 0.5 : 0, 1e-12);
+    gproj_mesh_destroy(offset);
+    gproj_mesh_destroy(mesh);
+    memset(&s, 0, sizeof s);
+    for (v = 0; v < 4; ++v) gprojt_add_vertex(&s, v == 1 || v == 2, v > 1, 0);
+    gprojt_add_vertex(&s, 0.5, 0, 0); /* amid side 0-1 */
+    gprojt_add_quad(&s, 0, 1, 2, 3);
+    gprojt_add_triangle(&s, 1, 0, 4);
+    mesh = gprojt_mesh_of(s);
+    offset = gproj_mesh_face_offset(mesh, 0.5, NULL, NULL);
+    GPROJT_REQUIRE(offset != NULL);
+    for (v = 0; v < 5; ++v) GPROJT_NEAR(offset->position[3 * v + 2], 0.5, 1e-12);
     gproj_mesh_destroy(offset);
     gproj_mesh_destroy(mesh);
 }
