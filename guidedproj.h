@@ -18175,9 +18175,9 @@ GPROJI_INTERNAL bool gproji_measure_outline(gproji_outline *o, gproji_pool *pool
     return true;
 }
 
-/* Predicts the cost (irregular vertices, sides that fit no grid) of the part from place i to place
-   j closed by a cut, whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of edges of
-   the cut, which is 0 unless the part is cut again. */
+/* Predicts the cost (irregular vertices, sides that fit no grid) of the part from place i to place j closed by a cut,
+   whose ends are corners if `first`, `last`. `edges` 0: a lower bound over all numbers of edges of the cut, which is 0
+   unless the part is cut again. */
 GPROJI_INTERNAL double gproji_part_cost(const gproji_outline *o, int32_t i, int32_t j, int32_t edges, bool first,
                                         bool last) {
     static const double cost[GPROJI_PATCH_SIDES + 1] = {3, 2, 0.6, 0.3, 0.3, 0.3, 0.6};
