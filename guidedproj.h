@@ -14541,7 +14541,8 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
                                "subdivide: face %d has %d corners, but Loop's scheme takes triangles; use "
                                "Catmull-Clark, or cut the faces into triangles",
                                f, mesh->face_degree[f]);
-        if (other >= 0 && mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
+        if (other >= 0 && mesh->face_degree[other] == 3 &&
+            mesh->origin[mesh->prev[h]] == mesh->origin[mesh->prev[h ^ 1]])
             return gproji_fail(error, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, f,
                                "subdivide: faces %d and %d have the same three corners, and their finer faces would "
                                "share edges; use Catmull-Clark, or remove them",

@@ -872,6 +872,12 @@ GPROJT_TEST(refusals) {
     pillow = gprojt_mesh_of(s);
     options = none, options.scheme = GPROJ_LOOP;
     gprojt_refused(pillow, &options, GPROJ_ERROR_NON_MANIFOLD, GPROJ_PLACE_FACE, 0, "the same three corners");
+    gproj_mesh_destroy(pillow);
+    memset(&s, 0, sizeof s); /* a triangle with two sides of a quad: the quad is refused */
+    for (i = 0; i < 4; ++i) gprojt_add_vertex(&s, i, i * i, 0);
+    gprojt_add_triangle(&s, 0, 1, 2), gprojt_add_quad(&s, 2, 1, 0, 3);
+    pillow = gprojt_mesh_of(s);
+    gprojt_refused(pillow, &options, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_FACE, 1, "face 1 has 4 corners");
     GPROJT_CHECK(!gproj_stencil_transpose(NULL, NULL, NULL) && !gproj_stencil_multiply(NULL, NULL, NULL, NULL));
     gproj_mesh_destroy(pillow);
     gproj_mesh_destroy(mesh);
