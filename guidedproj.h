@@ -13637,8 +13637,7 @@ GPROJI_INTERNAL void gproji_push_vertex(gproji_reader *reader, const double x[3]
 /* Appends a face; the caller appends the corners. */
 GPROJI_INTERNAL void gproji_push_face(gproji_reader *reader, int64_t degree, int32_t line) {
     if (degree < 3)
-        gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a face with %d corners; a face needs at least 3",
-                    (int32_t)(degree < -9 ? -9 : degree));
+        gproji_stop(reader, GPROJ_ERROR_DEGENERATE, line, "a face with %l corners; a face needs at least 3", degree);
     /* no text has the corners for a degree beyond int32_t, so a wrong number here is never used */
     gproji_push(reader, &reader->face_degree, (int32_t)degree);
     gproji_push(reader, &reader->face_line, line);

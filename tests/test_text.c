@@ -151,7 +151,7 @@ static const gprojt_bad_text gprojt_bad_texts[] = {
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6, "a face with 2 corners"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-5 0 1", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6, "a face with -5 corners"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n-4294967293 0 1 2", GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_LINE, 6,
-     "a face with -9 corners"}, /* no int32_t, which would be 3 */
+     "a face with -4294967293 corners"}, /* no int32_t, which would be 3 */
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3/1 0 1 2", GPROJ_ERROR_SYNTAX, GPROJ_PLACE_LINE, 6,
      "'3/1' is not a whole number"},
     {"OFF\n3 1 0\n0 0 0\n1 0 0\n\ninf 1 0\n3 0 1 2", GPROJ_ERROR_NUMBER, GPROJ_PLACE_VERTEX, 2, "line 6: coordinate x"},
