@@ -973,7 +973,7 @@ GPROJ_API gproj_memory gproj_edit_memory(const gproj_edit *edit);
 
 /* Makes a mesh from the edit as it is, elements ordered by their numbers (edges, as in all meshes, as they appear along
    the faces), and the maps of numbers. Polylines lose repeated vertices; one with a single vertex left is dropped.
-   Refuses only positions that gproj_mesh_create refuses. */
+   Refuses only positions that gproj_mesh_create refuses, and names the vertex by the number in the edit. */
 GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, gproj_error *error);
 
 /* The vertex that this number stands for: itself, or the one it was merged into; -1 out of range. */
@@ -12521,14 +12521,14 @@ GPROJI_INLINE void gproji_fill(int32_t *array, int32_t count, int32_t value) {
 
 /* -- checks -- */
 
-/* Refuses coordinates that are not finite or too large; the sentence calls the points `noun`. The error names a vertex
-   if they are the vertices. */
-GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t count, const double *position, gproj_place place,
+/* Refuses coordinates that are not finite or too large, of points `first` to `end` - 1; the sentence calls them `noun`.
+   The error names a vertex if they are the vertices. */
+GPROJI_INTERNAL gproj_code gproji_check_positions(int32_t first, int32_t end, const double *position, gproj_place place,
                                                   const char *noun, gproj_error *error) {
     int32_t i, k;
-    for (i = 0; i < count; ++i) {
+    for (i = first; i < end; ++i) {
         for (k = 0; k < 3; ++k) {
-            double x = position[3 * i + k];
+            double x = position[3 * (size_t)i + (size_t)k];
             const char *axis = k == 0 ? "x" : (k == 1 ? "y" : "z");
             int32_t index = place == GPROJ_PLACE_NONE ? -1 : i;
             if (!gproji_is_finite(x))
@@ -12868,7 +12868,7 @@ GPROJI_INTERNAL gproj_code gproji_mesh_build(gproji_mesh_object *object, gproji_
     int64_t corners = 0;
     code = gproji_count_corners(soup->vertex_count, soup->face_count, soup->face_degree, 0, &corners, error);
     if (code) return code;
-    code = gproji_check_positions(soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
+    code = gproji_check_positions(0, soup->vertex_count, soup->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     soup->corner_count = (int32_t)corners;
     object->mesh.vertex_count = soup->vertex_count;
@@ -14003,7 +14003,7 @@ GPROJ_API gproj_code gproj_mesh_write(const gproj_mesh *mesh, gproj_format forma
         return gproji_refuse(error,
                              "write: there is no mesh or no function to write with, or the format is neither OBJ nor "
                              "OFF");
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
+    code = gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     if (gproji_write_mesh(mesh, format, write, user) == GPROJ_OK) return GPROJ_OK;
     return gproji_fail(error, GPROJ_ERROR_FILE, GPROJ_PLACE_NONE, -1, "write: the function to write with has stopped");
@@ -14107,7 +14107,7 @@ GPROJ_API gproj_code gproj_mesh_save(const gproj_mesh *mesh, const char *path, g
     if (gproji_format_of_path(path) == GPROJ_FORMAT_DETECT)
         return gproji_refuse(error, "'%s' says no format; let the name end with .obj or .off",
                              gproji_quote_path(path, quote));
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
+    code = gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     problem = gproji_save_begin(&saving, path);
     if (!problem) {
@@ -14530,7 +14530,7 @@ GPROJI_INTERNAL gproj_code gproji_check_subdivision(const gproj_mesh *mesh, cons
     if (options->stencil_level < 0 || options->stencil_level >= options->levels)
         return gproji_refuse(error, "subdivide: a stencil from level %d to level %d; take 0 to %d",
                              options->stencil_level, options->levels, options->levels - 1);
-    code = gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
+    code = gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error);
     if (code) return code;
     /* 2. Loop's triangles: two with the same corners would have fine faces in the middle with three common edges. */
     for (f = 0; loop && f < mesh->face_count; ++f) {
@@ -14998,17 +14998,16 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_begin(int32_t segment_count, const gpr
     return NULL;
 }
 
-/* Ends every function that makes a curve: checks the points, and finds the tangents and the hierarchy. Returns the
-   curve, or NULL and keeps nothing. */
+/* Ends every function that makes a curve, after the points have been checked: finds the tangents and the hierarchy.
+   Returns the curve, or NULL and keeps nothing. */
 GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed, gproj_error *error) {
     const double *x = curve->point, *last;
     double extent = 0, *t = curve->tangent;
     int32_t s, k, count = curve->segment_count, from = -1;
-    bool valid = gproji_check_positions(count + 1, x, GPROJ_PLACE_VERTEX, "point", error) == GPROJ_OK;
     /* 1. Directions, and zeros for segments shorter than 1e-14 of the curve's extent, which rounding has turned. */
-    for (s = 0; valid && s <= count; ++s)
+    for (s = 0; s <= count; ++s)
         for (k = 0; k < 3; ++k) extent = gproji_fmax(extent, fabs(x[3 * (size_t)s + (size_t)k] - x[k]));
-    for (s = 0; valid && s < count; ++s, t += 3, x += 3) {
+    for (s = 0; s < count; ++s, t += 3, x += 3) {
         gproji_sub3(x + 3, x, t);
         if (gproji_length3(t) <= 1e-14 * extent)
             gproji_set3(0, 0, 0, t);
@@ -15024,7 +15023,7 @@ GPROJI_INTERNAL gproj_curve *gproji_curve_finish(gproj_curve *curve, bool closed
             if (!(gproji_dot3(t, t) > 0)) gproji_copy3(last, t);
         if (gproji_hierarchy_build(&curve->pool, &curve->tree, count, curve->point, NULL)) return curve;
         gproji_fail_memory(error);
-    } else if (valid) {
+    } else {
         gproji_fail(error, GPROJ_ERROR_DEGENERATE, GPROJ_PLACE_NONE, -1,
                     "all %d points of the curve are the same; it needs two different ones", count + (closed ? 0 : 1));
     }
@@ -15044,6 +15043,7 @@ GPROJ_API gproj_curve *gproj_curve_create(int32_t count, const double *points, b
                       count);
         return NULL;
     }
+    if (gproji_check_positions(0, count, points, GPROJ_PLACE_VERTEX, "point", error)) return NULL;
     curve = gproji_curve_begin(closed ? count : count - 1, host, error);
     if (!curve) return NULL;
     memcpy(curve->point, points, (size_t)count * 3 * sizeof(double));
@@ -15060,8 +15060,12 @@ GPROJ_API gproj_curve *gproj_curve_from_loop(const gproj_mesh *mesh, int32_t loo
         gproji_refuse(error, "boundary loop %d of a mesh that has %d of them", loop, mesh->loop_count);
         return NULL;
     }
-    start = mesh->loop_halfedge[loop];
-    for (count = 1, h = mesh->prev[start]; h != start; h = mesh->prev[h]) ++count;
+    start = h = mesh->loop_halfedge[loop], count = 0;
+    do {
+        int32_t v = mesh->origin[h];
+        if (gproji_check_positions(v, v + 1, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error)) return NULL;
+        ++count, h = mesh->prev[h];
+    } while (h != start);
     curve = gproji_curve_begin(count, host, error);
     if (!curve) return NULL;
     /* with the faces' edges, that is against the boundary half-edges */
@@ -15082,6 +15086,9 @@ GPROJ_API gproj_curve *gproj_curve_from_polyline(const gproj_mesh *mesh, int32_t
     }
     vertex = mesh->polyline_vertex + mesh->polyline_start[polyline];
     segments = mesh->polyline_start[polyline + 1] - mesh->polyline_start[polyline] - 1;
+    for (i = 0; i <= segments; ++i)
+        if (gproji_check_positions(vertex[i], vertex[i] + 1, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+            return NULL;
     curve = gproji_curve_begin(segments, host, error);
     if (!curve) return NULL;
     for (i = 0; i <= segments; ++i) gproji_copy3(mesh->position + 3 * (size_t)vertex[i], curve->point + 3 * (size_t)i);
@@ -15282,7 +15289,7 @@ GPROJ_API gproj_surface *gproj_surface_create(const gproj_mesh *mesh, const gpro
     if (!gproji_given(mesh, "mesh of the surface", error)) return NULL;
     if (!mesh->face_count) gproji_refuse(error, "the mesh of the surface has no faces");
     if (!mesh->face_count ||
-        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+        gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
         return NULL;
     surface = (gproj_surface *)gproji_create_object(host, sizeof(gproj_surface), error);
     if (!surface) return NULL;
@@ -15870,6 +15877,7 @@ GPROJ_API gproj_mesh *gproj_edit_mesh(gproj_edit *edit, const gproj_host *host, 
     for (v = 0; !code && v < s->count[GPROJI_EDIT_VERTEX]; ++v) {
         vertex[v] = s->vertex_into[v] == v ? soup->vertex_count : vertex[s->vertex_into[v]];
         if (s->vertex_into[v] != v) continue;
+        code = gproji_check_positions(v, v + 1, s->position, GPROJ_PLACE_VERTEX, "vertex", error);
         gproji_copy3(s->position + 3 * (size_t)v, draft.position + 3 * (size_t)soup->vertex_count++);
     }
     /* 2. Faces. */
@@ -16339,7 +16347,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_dual_make(const gproj_mesh *mesh, bool diagon
     gproj_code code;
     int64_t vertices, edges, faces, corners;
     if (!gproji_given(mesh, "mesh", error) ||
-        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+        gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
         return NULL;
     vertices = mesh->vertex_count, edges = mesh->edge_count, faces = mesh->face_count;
     corners = 4 * edges + 3 * vertices;
@@ -17302,7 +17310,7 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
                     mesh ? "the distance of the offset is not a finite number" : "the mesh to offset is NULL");
         return NULL;
     }
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error)) return NULL;
+    if (gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error)) return NULL;
     offset = gproj_mesh_copy(mesh, host, error);
     if (!offset) return NULL;
     gproji_pool_start(&pool, &gproji_mesh_owner(offset)->heap);
@@ -17312,7 +17320,8 @@ GPROJI_INTERNAL gproj_mesh *gproji_offset(const gproj_mesh *mesh, double distanc
     for (i = 0; !code && i < count; ++i) offset->position[i] += distance * x[i];
     gproji_pool_give_all(&pool);
     if (!code)
-        code = gproji_check_positions(mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error);
+        code =
+            gproji_check_positions(0, mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error);
     if (!code) return offset;
     gproj_mesh_destroy(offset);
     return NULL;
@@ -17347,8 +17356,8 @@ GPROJ_API gproj_mesh *gproj_mesh_support(const gproj_mesh *mesh, const gproj_mes
                       "faces");
         return NULL;
     }
-    if (gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error) ||
-        gproji_check_positions(mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error))
+    if (gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", error) ||
+        gproji_check_positions(0, mesh->vertex_count, offset->position, GPROJ_PLACE_VERTEX, "offset vertex", error))
         return NULL;
     if (mesh->edge_count > GPROJI_VERTICES_MAX / 4) {
         gproji_fail(error, GPROJ_ERROR_SIZE, GPROJ_PLACE_NONE, -1, "the support of %d edges has too many vertices",
@@ -17864,7 +17873,7 @@ GPROJI_INTERNAL gproj_code gproji_check_curve(gproji_filling *f) {
                              f->points ? "a closed curve of %d points; it needs at least 3 and at most %d"
                                        : "the points of the curve are NULL",
                              f->count, (int32_t)GPROJI_VERTICES_MAX);
-    code = gproji_check_positions(f->count, f->points, GPROJ_PLACE_VERTEX, "point", f->error);
+    code = gproji_check_positions(0, f->count, f->points, GPROJ_PLACE_VERTEX, "point", f->error);
     if (code) return code;
     for (i = 0; i < f->count; ++i) {
         j = i + 1 < f->count ? i + 1 : 0;
@@ -18994,7 +19003,7 @@ static const double gproji_farthest = 1e20;
    the form's. */
 GPROJI_INTERNAL bool gproji_positions_are_finite(const gproj_form *form, gproj_error *error) {
     int32_t i, k;
-    if (gproji_check_positions(form->mesh->vertex_count, form->mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
+    if (gproji_check_positions(0, form->mesh->vertex_count, form->mesh->position, GPROJ_PLACE_VERTEX, "vertex", error))
         return false;
     for (i = 0; i < form->mesh->vertex_count; ++i) {
         double p[3];
@@ -19044,7 +19053,7 @@ GPROJ_API gproj_form *gproj_form_create(gproj_mesh *mesh, const gproj_host *host
     form->system = gproj_system_create(&form->host);
     if (pool->failed || !form->system) gproji_fail_memory(&form->error);
     if (form->error.code ||
-        gproji_check_positions(mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", &form->error))
+        gproji_check_positions(0, mesh->vertex_count, mesh->position, GPROJ_PLACE_VERTEX, "vertex", &form->error))
         return form;
     /* 2. The bounding box's centre. Vertices without edges count only if there are no others: one far away would take
        the digits of all coordinates. */
@@ -19394,7 +19403,7 @@ GPROJ_API int32_t gproj_add_targets(gproj_form *form, int32_t count, const int32
     gproji_part *part = gproji_new_list_part(form, &gproji_targets_rule, count, vertices);
     if (part && part->count > 0 && !positions)
         return gproji_none(gproji_refuse(&form->error, "targets: there are no positions"));
-    if (part && gproji_check_positions(part->count, positions, GPROJ_PLACE_NONE, "target", &form->error)) return -1;
+    if (part && gproji_check_positions(0, part->count, positions, GPROJ_PLACE_NONE, "target", &form->error)) return -1;
     return gproji_add_points(part, positions, weight);
 }
 
@@ -19406,7 +19415,7 @@ GPROJ_API gproj_code gproj_set_targets(gproj_form *form, int32_t group, const do
     if (!part || part->rule != &gproji_targets_rule || !positions)
         return gproji_fail(&form->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_GROUP, group,
                            "group %d has no targets, or there are no positions", group);
-    if (gproji_check_positions(part->count, positions, GPROJ_PLACE_NONE, "target", &form->error))
+    if (gproji_check_positions(0, part->count, positions, GPROJ_PLACE_NONE, "target", &form->error))
         return form->error.code;
     for (i = 0; i < part->count; ++i) {
         double p[3];
@@ -24430,7 +24439,7 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
     if (!drag || !positions) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag) ||
-        gproji_check_positions(drag->info.handles, positions, GPROJ_PLACE_NONE, "handle", &drag->error) != GPROJ_OK)
+        gproji_check_positions(0, drag->info.handles, positions, GPROJ_PLACE_NONE, "handle", &drag->error) != GPROJ_OK)
         return drag->error.code;
     info = drag->info;
     s = drag->form->system;
@@ -24605,7 +24614,7 @@ GPROJI_INTERNAL gproj_code gproji_check_drag(gproj_form *form, const gproj_handl
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
                                "drag: the weights of handle %d are none, all zero, or no finite numbers", k);
     }
-    return h->position ? gproji_check_positions(h->count, h->position, GPROJ_PLACE_NONE, "handle", error) : GPROJ_OK;
+    return h->position ? gproji_check_positions(0, h->count, h->position, GPROJ_PLACE_NONE, "handle", error) : GPROJ_OK;
 }
 
 GPROJ_API gproj_drag *gproj_drag_begin(gproj_form *form, const gproj_handles *handles,

@@ -1376,7 +1376,10 @@ GPROJT_TEST(arguments_are_checked) {
     e->position[7] = HUGE_VAL;
     GPROJT_CHECK(gproj_edit_triangulate(e, e->face[e->vertex_halfedge[2] ^ 1], &error) == 1);
     GPROJT_CHECK(!gproj_edit_mesh(e, NULL, &error) && error.code == GPROJ_ERROR_NUMBER && !e->vertex_number);
-    e->position[7] = 0;
+    e->position[7] = 0, e->position[3 * 19] = HUGE_VAL; /* vertices before it are merged */
+    GPROJT_CHECK(!gproj_edit_mesh(e, NULL, &error) && error.place == GPROJ_PLACE_VERTEX && error.index == 19 &&
+                 strstr(error.message, "x of vertex 19 "));
+    e->position[3 * 19] = 0;
     gproj_mesh_destroy(gprojt_edit_mesh(e));
     gproj_edit_destroy(e);
 }

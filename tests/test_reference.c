@@ -310,7 +310,11 @@ GPROJT_TEST(curves_from_meshes) {
     GPROJT_CHECK(!gproj_curve_from_loop(mesh, -1, NULL, &error) && strstr(error.message, "boundary loop -1"));
     mesh->position[4] = NAN;
     GPROJT_CHECK(!gproj_curve_from_loop(mesh, 0, NULL, &error) && error.code == GPROJ_ERROR_NUMBER);
+    GPROJT_CHECK(error.index == 1 && strstr(error.message, "of vertex 1 ")); /* not where it is on the curve */
     GPROJT_CHECK(!gproj_surface_create(mesh, NULL, &error) && error.code == GPROJ_ERROR_NUMBER && error.index == 1);
+    mesh->position[4] = 0, mesh->position[3 * 4 + 2] = HUGE_VAL;
+    GPROJT_CHECK(!gproj_curve_from_polyline(mesh, 0, NULL, &error) && error.code == GPROJ_ERROR_NUMBER &&
+                 error.place == GPROJ_PLACE_VERTEX && error.index == 4 && strstr(error.message, "z of vertex 4 "));
     gproj_mesh_destroy(mesh);
 }
 
