@@ -10679,11 +10679,12 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     /* 2. Rounding of long sums: the linear terms of global rows. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->global && g->weight > 0 && r < g->row_count; ++r) {
+        for (r = 0; g->global && gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const int32_t *variable = g->local.variable + row->local;
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
             double sum = 0;
+            if (!(row->weight > 0)) continue;
             if (row->contiguous)
                 sum = gproji_absolute_dot(g->local.gradient + row->local, s->x + variable[0], row->terms);
             else
@@ -11369,7 +11370,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
         /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are
            patient: they are made where this one has ended badly. */
-        if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
+        if (loop->result.iterations - loop->watch.seen >= GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
             double residual = loop->standing.residual;
             bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
             if (creeps && loop->attempt.earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
