@@ -575,8 +575,8 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Bounds count by their violation, min(phi, 0), in residual and merit. A row takes part in the sums if it is violated;
    if a step would violate more rows, the step is found again with these, and without rows that would only hold it back
-   (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some iterations, and nothing as long as
-   they are far from being reached. */
+   (phi + g'dx > 0), at most 3 times, and once more if that leads nowhere. So bounds cost further factorisations in some
+   iterations, and nothing as long as they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
 typedef enum gproj_kind {
@@ -645,8 +645,8 @@ typedef struct gproj_group {
     void *refresh_user;
 } gproj_group;
 
-/* A group at the last evaluation, by a solve or a drag (zeros before), in the units of the rows, without weights. In a
-   bound phi stands for min(phi, 0), the violation. */
+/* A group at the last evaluation, by a solve or a drag (zeros before), in the units of the rows, without weights; rows
+   whose own weight is 0 have phi = 0. In a bound phi stands for min(phi, 0), the violation. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -11606,13 +11606,16 @@ enum {
 };
 
 /* The weights of a slide (`tangential`), or of a projection between slides, without the guard: wishes keep theirs,
-   whatever their schedules say, scaled so that the largest is `scale`. */
+   whatever their schedules say, scaled so that the largest of those with rows that count is `scale`. */
 GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, bool tangential) {
     double largest = 0;
-    int32_t i;
+    int32_t i, r;
     s->progress.tangential = tangential;
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_WISH) largest = gproji_fmax(largest, s->group[i].schedule.weight);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_WISH && r < g->row_count; ++r)
+            if (g->row[r].weight > 0) largest = gproji_fmax(largest, g->schedule.weight);
+    }
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;

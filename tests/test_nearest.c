@@ -287,6 +287,25 @@ GPROJT_TEST(one_side_only) {
     gproj_system_destroy(s);
 }
 
+/* A heavy wish without rows, or without rows that count, does not make the others light. */
+GPROJT_TEST(wishes_without_rows) {
+    static const double a[3] = {1, 1.5, 0.7}, p[3] = {2, 1.1, 0.9};
+    double expected[3];
+    int rows;
+    gprojt_nearest_on_ellipsoid(a, p, expected);
+    for (rows = 0; rows < 2; ++rows) {
+        gproj_system *s = gprojt_one_point(a, p, 1);
+        int32_t heavy = gprojt_add_group(s, "heavy", GPROJ_WISH, 1e9);
+        gproj_result result;
+        gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+        if (rows) gprojt_add_linear(s, heavy, 0, 1, -5, 0);
+        if (rows) gproj_system_set_row_weight(s, heavy, 0, 0);
+        result = gprojt_solve_nearest(s, 60);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_far(gproj_system_values(s), expected) < 1e-6);
+        gproj_system_destroy(s);
+    }
+}
+
 /* Only the ratios of the wishes' weights matter, and decay and last do not. */
 GPROJT_TEST(weights_are_ratios) {
     static const double a[3] = {1, 2, 0.6}, p[3] = {1.5, 1.2, 0.9}, q[3] = {0.3, 2, 1.4};
@@ -1056,6 +1075,7 @@ int main(void) {
     GPROJT_RUN(slides_stay_in_reach);
     GPROJT_RUN(global_rows);
     GPROJT_RUN(one_side_only);
+    GPROJT_RUN(wishes_without_rows);
     GPROJT_RUN(weights_are_ratios);
     GPROJT_RUN(optimality_has_no_unit);
     GPROJT_RUN(moves_less_than_projection);
