@@ -11606,7 +11606,7 @@ enum {
 };
 
 /* The weights of a slide (`tangential`), or of a projection between slides, without the guard: wishes keep theirs,
-   whatever their schedules say, scaled so that the largest of those with rows that count is `scale`. */
+   whatever their schedules say, scaled so that a row's largest, with the row's own, is `scale`. */
 GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, bool tangential) {
     double largest = 0;
     int32_t i, r;
@@ -11614,7 +11614,7 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, b
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
         for (r = 0; g->kind == GPROJ_WISH && r < g->row_count; ++r)
-            if (g->row[r].weight > 0) largest = gproji_fmax(largest, g->schedule.weight);
+            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
     }
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
