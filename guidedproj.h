@@ -556,9 +556,9 @@ typedef struct gproj_least_squares_result {
    factorisations of a matrix with the pattern of A'A, so a row of A must not have very many entries. Most problems take
    5 to 20, up to 30 if most bounds matter and the residual stays large, 40 and more if many columns nearly depend on
    others (forces in large, shallow shells), and none more than 80. If A has dependent columns and damping is 0, nothing
-   is added to the problem: the matrix in each step has a diagonal larger by a part of 1e-12, but the solution satisfies
-   the conditions without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT. Errors: GPROJ_ERROR_ARGUMENT, _INDEX,
-   _NUMBER, _SIZE for a wrong problem, GPROJ_ERROR_MEMORY. */
+   is added to the problem: the matrix in each step has a diagonal larger by a part of 1e-12 (more if it is singular to
+   rounding), but the solution satisfies the conditions without it. Returns GPROJ_OK also for GPROJ_LEAST_SQUARES_LIMIT.
+   Errors: GPROJ_ERROR_ARGUMENT, _INDEX, _NUMBER, _SIZE for a wrong problem, GPROJ_ERROR_MEMORY. */
 GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *problem, const gproj_host *host, double *x,
                                                gproj_least_squares_result *result, gproj_error *error);
 
@@ -575,8 +575,8 @@ GPROJ_API gproj_code gproj_solve_least_squares(const gproj_least_squares *proble
 
    Bounds count by their violation, min(phi, 0), in residual and merit. A row takes part in the sums if it is violated;
    if a step would violate more rows, the step is found again with these, and without rows that would only hold it back
-   (phi + g'dx > 0), at most 3 times. So bounds cost further factorisations in some iterations, and nothing as long as
-   they are far from being reached. */
+   (phi + g'dx > 0), at most 3 times, and once more if that leads nowhere. So bounds cost further factorisations in some
+   iterations, and nothing as long as they are far from being reached. */
 typedef struct gproj_system gproj_system;
 
 typedef enum gproj_kind {
@@ -587,8 +587,8 @@ typedef enum gproj_kind {
 } gproj_kind;
 
 /* The weight in iteration n = 1, 2, ...: weight * decay^n for n <= last, then 0. Make it by the functions below; decay
-   may be set afterwards. Needs 0 <= weight <= 1e50, and unless the weight is 0 also 0 < decay <= 1, and last >= 1 or
-   GPROJ_LAST_GUIDING. */
+   may be set afterwards. Needs 0 <= weight <= 1e50, 0 < decay <= 1, and last >= 1 or GPROJ_LAST_GUIDING; if the weight
+   is 0, decay and last may be 0, too. */
 typedef struct gproj_schedule {
     double weight;
     double decay;
@@ -645,8 +645,8 @@ typedef struct gproj_group {
     void *refresh_user;
 } gproj_group;
 
-/* A group at the last evaluation, by a solve or a drag (zeros before), in the units of the rows, without weights. In a
-   bound phi stands for min(phi, 0), the violation. */
+/* A group at the last evaluation, by a solve or a drag (zeros before), in the units of the rows, without weights; rows
+   whose own weight is 0 have phi = 0. In a bound phi stands for min(phi, 0), the violation. */
 typedef struct gproj_group_info {
     char name[GPROJ_NAME_SIZE];
     gproj_kind kind;
@@ -701,7 +701,7 @@ typedef bool (*gproj_on_iteration)(void *user, gproj_system *system, const gproj
 typedef struct gproj_solve_options {
     /* The constraints hold when every |phi| <= tolerance. 0 means 1e-13, or more if rounding asks for it: 8 roundings
        of the largest |x| (above 1e-11: of the largest in rows that must hold) or 16 of sum_t |a_t x_t| in a global row
-       sum_t a_t x_t, at most 1e-8; if rounding still keeps a row from holding (large forces), 4 of sum_k
+       sum_t a_t x_t that must hold, at most 1e-8; if rounding still keeps a row from holding (large forces), 4 of sum_k
        |dphi/dx_k x_k|, at most 1e-11. */
     double tolerance;
     double epsilon;     /* > 0: this regularisation in every step; 0: 0.3 sqrt(sum w^2 phi^2) of what must hold, from
@@ -6733,9 +6733,10 @@ GPROJ_API double gproj_cholesky_refine(gproj_cholesky *cholesky, const int64_t *
    An interior-point method finds which variables are at their bounds; Newton steps on the others, with exchanges for
    the few mistakes, make the solution exact. All matrices are
        A'A + damping^2 I + D + a diagonal,
-   so one pattern is analysed once. D is 1e-12 times the diagonal, and only in the matrix, never in the gradient: each
-   step belongs to the proximal point method (Rockafellar 1976), which solves the undamped problem even if A'A is
-   singular; dependent columns stay near their start instead of being driven to a corner.
+   so one pattern is analysed once. D is 1e-12 times the diagonal, or more where the matrix is singular to rounding; it
+   is only in the matrix, never in the gradient: each step belongs to the proximal point method (Rockafellar 1976),
+   which solves the undamped problem even if A'A is singular; dependent columns stay near their start instead of being
+   driven to a corner.
 
    The interior-point method is Mehrotra's (1992) with Gondzio's correctors (1996) and equal steps for x and the
    multipliers. Each finite bound is a pair: a slack s > 0 and a multiplier z > 0, sought with s z = 0. The step dx
@@ -6752,7 +6753,7 @@ enum {
     GPROJI_SQUARES_STALLED = 4 /* guesses in turn that do not halve a small kkt */
 };
 
-/* Bounds and numbers beyond it are none: powers and products stay finite. */
+/* Larger numbers and bounds are refused: powers and products stay finite. */
 #define GPROJI_SQUARES_HUGE 1e50
 /* Stands for a missing bound, beyond all values that a variable may have. */
 #define GPROJI_SQUARES_NONE DBL_MAX
@@ -8568,8 +8569,7 @@ GPROJI_INTERNAL double gproji_row_value(const gproji_group *g, int32_t r, const 
     return phi;
 }
 
-/* Sums phi up with twice the digits. In products only the first two factors are multiplied so exactly, which is enough
-   for large terms that cancel. */
+/* Sums phi up with twice the digits, and multiplies so, for numbers below 1e100. */
 GPROJI_INTERNAL double gproji_row_value_precisely(const gproji_group *g, const gproji_row *row, const double *x) {
     const int32_t *variable = g->local.variable + row->local;
     const gproj_term *term = g->term + row->term, *end = term + row->terms;
@@ -9848,8 +9848,9 @@ GPROJI_INLINED void gproji_reflect_back(int32_t m, int32_t count, const double *
 
 /* Turns R, by rows and with a reciprocal diagonal (0: none), into the factor of R'R + shift I; the shift is not below
    rounding. */
-GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, double shift) {
-    double square[GPROJI_BLOCK_MAX * GPROJI_BLOCK_MAX], trace = 0;
+GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, double shift) {
+    const int32_t size = GPROJI_SCHUR_LOCALS;
+    double square[GPROJI_SCHUR_LOCALS * GPROJI_SCHUR_LOCALS], trace = 0;
     int32_t i, j, k;
     /* R'R, from R with a true diagonal. */
     for (k = 0; k < size; ++k)
@@ -9869,9 +9870,10 @@ GPROJI_INTERNAL void gproji_shift_triangle(double *triangle, int32_t size, doubl
 
 /* Takes R in w N = Q R, by rows and with a reciprocal diagonal; 0 if a column depends on those before it. a->share:
    squared Frobenius norm |R^-1|^2, infinite if there are such columns. In lanes. */
-GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t closes, int32_t size) {
-    const double *column = a->column + closes * m * GPROJI_LANES, *diagonal = a->diagonal + closes * GPROJI_LANES;
-    double unit[(int32_t)GPROJI_BLOCK_MAX * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
+GPROJI_INLINED void gproji_take_triangle(gproji_alike *a) {
+    const int32_t m = a->m, skip = a->zero_sum, size = GPROJI_SCHUR_LOCALS;
+    const double *column = a->column + skip * m * GPROJI_LANES, *diagonal = a->diagonal + skip * GPROJI_LANES;
+    double unit[(int32_t)GPROJI_SCHUR_LOCALS * GPROJI_LANES], all[GPROJI_LANES], *triangle = a->triangle;
     int32_t i, j, k, l;
     /* 1. R; a column is dependent if next to nothing is left on the diagonal. */
     for (j = 0; j < size; ++j) {
@@ -9879,7 +9881,7 @@ GPROJI_INLINED void gproji_take_triangle(gproji_alike *a, int32_t m, int32_t clo
         double *corner = triangle + (j * size + j) * GPROJI_LANES;
         for (l = 0; l < GPROJI_LANES; ++l) all[l] = own[l] * own[l];
         for (i = 0; i < j; ++i) {
-            const double *from = column + (j * m + closes + i) * GPROJI_LANES;
+            const double *from = column + (j * m + skip + i) * GPROJI_LANES;
             double *to = triangle + (i * size + j) * GPROJI_LANES;
             for (l = 0; l < GPROJI_LANES; ++l) {
                 to[l] = from[l];
@@ -9922,7 +9924,7 @@ GPROJI_INLINED void gproji_schur_project(const gproj_system *s, const gproji_ali
     double *c = a->c, *right = d->side + d->first[e] + first, scale[GPROJI_SCHUR_TOGETHER];
     int32_t i, j, p;
     int64_t l;
-    /* 1. Each row, read once: C has GPROJI_BLOCK_MAX numbers a node at first, so that local_at is an index. */
+    /* 1. Each row, read once: C has GPROJI_BLOCK_MAX numbers a node at first, so that local.at is an index. */
     memset(c, 0, (size_t)(numbers * together) * sizeof *c);
     for (j = 0; j < together; ++j) right[j] = 0;
     for (i = 0; i < a->m; ++i) {
@@ -9963,12 +9965,12 @@ GPROJI_INTERNAL void gproji_schur_alike(const gproj_system *s, gproji_alike *a) 
     else
         gproji_reflect(a->m, a->count, a->column, a->scale, a->diagonal);
     /* 2. R, and the share in E that keeps normals from turning too fast. */
-    gproji_take_triangle(a, a->m, a->zero_sum, size);
+    gproji_take_triangle(a);
     for (lane = 0; lane < a->lanes; ++lane) {
         double *triangle = d->triangle + (int64_t)(a->first + lane) * d->triangle_size, heaviest = a->heaviest[lane];
         double share = heaviest > 0 ? gproji_fmin(a->share[lane] * heaviest * heaviest, 1 / d->epsilon2) : 0;
         for (k = 0; k < size * size; ++k) triangle[k] = a->triangle[k * GPROJI_LANES + lane];
-        if (share == 1 / d->epsilon2) gproji_shift_triangle(triangle, size, gproji_schur_calm * d->epsilon2);
+        if (share == 1 / d->epsilon2) gproji_shift_triangle(triangle, gproji_schur_calm * d->epsilon2);
         a->share[lane] = share * gproji_schur_share;
     }
     /* 3. Multipliers: columns of Q behind the first `count`, which span N. */
@@ -10391,7 +10393,7 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
    linearised rows at the end of a step is known exactly, and the factor at hand turns it into a second-order correction
    for the price of a solution (Transtrum, Sethna: Improvements to the Levenberg-Marquardt algorithm for nonlinear
    least-squares minimization, 2012, with the true discrepancy instead of a second derivative). Circular faces that need
-   25 iterations without it need 9 (test_smooth).
+   13 to 25 iterations without it need 9 at most (test_smooth).
 
    Safeguards give way in stages (gproji_yielding): where they leave the last bit of a residual to fall slowly they ask
    for less; where no step is found with them, for the least; and then they are let go: constraints come first, and the
@@ -10488,7 +10490,6 @@ typedef struct gproji_watch {
 typedef struct gproji_trust {
     double agreement; /* the merit's decrease by the full step, over the one predicted by the linearised rows */
     double left;      /* the part of the merit that the last step has left */
-    bool factored;    /* the last trial found a step, whether good or not */
     bool failed;      /* a trial of this iteration was not good */
     bool restless;    /* a step has failed while the metric rested */
     int32_t wary;     /* iterations in which the stiffness does not fall fast */
@@ -10576,7 +10577,7 @@ GPROJI_INTERNAL bool gproji_is_fading(const gproji_loop *loop, const gproji_grou
     return loop->wishes.fading > 0 && gproji_is_callers_wish(g) && g->schedule.last >= loop->iterations;
 }
 
-/* The last iteration in which a group has a weight; 0: it keeps one for ever, and is no wish. */
+/* The last iteration in which a group has a weight; 0: it keeps one for ever. */
 GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gproji_group *g) {
     bool guiding = g->schedule.last == GPROJ_LAST_GUIDING;
     if (gproji_is_fading(loop, g) || (guiding && g->kind == GPROJ_WISH)) return loop->wishes.last;
@@ -10593,7 +10594,7 @@ GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_gr
     if (g->role >= GPROJI_METRIC) return weight * loop->system->stiffness;
     if (last > 0 && n > last) return 0;
     if (loop->attempt.left_out && last < loop->iterations && gproji_is_callers_wish(g)) return 0;
-    return weight * (g->schedule.decay > 0 ? pow(g->schedule.decay, (double)n) : 1);
+    return weight * pow(g->schedule.decay, (double)n);
 }
 
 /* Sets the weights of iteration n; true when a group came back that had none before. */
@@ -10679,11 +10680,12 @@ GPROJI_INTERNAL double gproji_tolerance_at(const gproji_loop *loop) {
     /* 2. Rounding of long sums: the linear terms of global rows. */
     for (i = 0; i < s->group_count; ++i) {
         const gproji_group *g = &s->group[i];
-        for (r = 0; g->global && g->weight > 0 && r < g->row_count; ++r) {
+        for (r = 0; g->global && gproji_must_hold(g) && r < g->row_count; ++r) {
             const gproji_row *row = &g->row[r];
             const int32_t *variable = g->local.variable + row->local;
             const gproj_term *term = g->term + row->term, *end = term + row->terms;
             double sum = 0;
+            if (!(row->weight > 0)) continue;
             if (row->contiguous)
                 sum = gproji_absolute_dot(g->local.gradient + row->local, s->x + variable[0], row->terms);
             else
@@ -10828,7 +10830,7 @@ GPROJI_INTERNAL void gproji_merit_along(const gproj_system *s, gproji_course *m)
             double w2 = gproji_weight2(g, row), phi = row->phi, h, q = 0;
             if (!(w2 > 0) || g->role >= GPROJI_METRIC || (g->role == GPROJI_GUARD && !row->active)) continue;
             h = gproji_row_times(g, row, s->vector.step);
-            /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference; runs are linear */
+            /* phi(x + dx) - phi(x) - grad phi(x)'dx, without the rounding of a difference */
             for (; !row->contiguous && term < end; ++term)
                 if (term->j >= 0) q += term->a * s->vector.step[variable[term->i]] * s->vector.step[variable[term->j]];
             if (g->kind != GPROJ_BOUND || phi + h < 0) m->model += w2 * (phi + h) * (phi + h);
@@ -11021,7 +11023,7 @@ GPROJI_INTERNAL double gproji_step_length(gproji_loop *loop) {
     return t >= 1.3 ? t : 1;
 }
 
-/* Activates exactly the bounds' rows that are violated at the present x. */
+/* Activates exactly the bounds' rows that are violated at the present x; in safeguards, by more than rounding. */
 GPROJI_INTERNAL void gproji_start_bounds(gproj_system *s) {
     int32_t i, r;
     for (i = 0; i < s->group_count; ++i) {
@@ -11136,7 +11138,7 @@ GPROJI_INTERNAL bool gproji_find_bounded_step(gproji_loop *loop, double epsilon)
                    loop->hooks.inspect(loop->hooks.user, s->vector.saved, s->x);
         again = round < GPROJI_BOUND_ROUNDS && gproji_switch_bounds(loop, round);
         circles = circles || (again && round + 1 == GPROJI_BOUND_ROUNDS);
-        round += round < GPROJI_BOUND_ROUNDS;
+        ++round;
         if (!violated && !again) {
             if (!circles) return true;
             gproji_merit_along(s, &merit);
@@ -11223,16 +11225,15 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
     loop->trust.failed = false;
     for (trial = 0; trial < GPROJI_TRIALS && s->error.code == GPROJ_OK; ++trial) {
         gproji_standing before = loop->standing;
-        bool stepped;
+        bool factored, stepped;
         /* 1. The full step, and the good part of it: x is the new one, or the old one if there is none. */
         loop->iteration.epsilon = epsilon;
-        loop->trust.factored = gproji_find_bounded_step(loop, epsilon);
-        loop->iteration.length = loop->trust.factored ? gproji_step_length(loop) : 0;
+        factored = gproji_find_bounded_step(loop, epsilon);
+        loop->iteration.length = factored ? gproji_step_length(loop) : 0;
         stepped = loop->iteration.length > 0;
         if (!stepped) {
             gproji_step_back(s);
-            if (loop->trust.factored && loop->hooks.settle)
-                gproji_linearise(loop); /* rows were linearised on the way */
+            if (factored && loop->hooks.settle) gproji_linearise(loop); /* rows were linearised on the way */
         } else if (loop->iteration.length > 1 || (loop->iteration.length < 1 && !loop->hooks.settle)) {
             loop->iteration.step = gproji_take_step(s, loop->iteration.length);
             gproji_settle(loop);
@@ -11253,7 +11254,7 @@ GPROJI_INTERNAL bool gproji_iterate(gproji_loop *loop) {
         gproji_weigh_anchor(s);
         gproji_start_bounds(s);
         /* 2. Stiffer steps, or a larger eps if stiffness is no help. */
-        if (loop->stiff && loop->trust.factored && loop->standing.residual > gproji_stiffness_ends) {
+        if (loop->stiff && factored && loop->standing.residual > gproji_stiffness_ends) {
             loop->trust.failed = true;
             loop->trust.restless = loop->trust.restless || !(s->stiffness > 0);
             gproji_stiffen(loop, s->stiffness > 0 ? 3 * s->stiffness : gproji_stiffness_least);
@@ -11369,7 +11370,7 @@ GPROJI_INTERNAL gproj_outcome gproji_run_loop(gproji_loop *loop) {
         if (loop->result.iterations >= loop->watch.yield_at) gproji_let_safeguards_yield(loop);
         /* Looks now and then at how far the residual has fallen, once the wishes have faded. Later attempts are
            patient: they are made where this one has ended badly. */
-        if (loop->result.iterations >= loop->watch.seen + GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
+        if (loop->result.iterations - loop->watch.seen >= GPROJI_CREEP_ITERATIONS && !gproji_wishes_are_on(s)) {
             double residual = loop->standing.residual;
             bool creeps = residual <= gproji_creep_below && residual > gproji_creep_left * loop->watch.fallen;
             if (creeps && loop->attempt.earlier == 0 && s->yield == GPROJI_YIELD_SLOWLY) s->yield = GPROJI_YIELD_FLOOR;
@@ -11605,13 +11606,16 @@ enum {
 };
 
 /* The weights of a slide (`tangential`), or of a projection between slides, without the guard: wishes keep theirs,
-   whatever their schedules say, scaled so that the largest is `scale`. */
+   whatever their schedules say, scaled so that a row's largest, with the row's own, is `scale`. */
 GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, bool tangential) {
     double largest = 0;
-    int32_t i;
+    int32_t i, r;
     s->progress.tangential = tangential;
-    for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].kind == GPROJ_WISH) largest = gproji_fmax(largest, s->group[i].schedule.weight);
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->kind == GPROJ_WISH && r < g->row_count; ++r)
+            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
+    }
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
@@ -11863,6 +11867,7 @@ GPROJI_INTERNAL bool gproji_slide(gproji_loop *loop) {
         gproji_lap(loop, GPROJ_PHASE_SOLVE);
         gproji_evaluate(s);
         shift = gproji_fmax(3 * shift, gproji_nearest_shift);
+        /* Where bounds take several factorisations a trial this may be skipped: then the calm step is next. */
         if (curved && loop->iteration.factorisations == GPROJI_CURVED_TRIALS) {
             if (flat) loop->slides.shift = shift; /* multipliers begin anew in the next slide */
             curved = false;

@@ -1107,6 +1107,29 @@ GPROJT_TEST(tolerance_of_global_rows) {
     }
 }
 
+/* Neither a wish nor a row without weight makes the tolerance of what must hold larger. */
+GPROJT_TEST(tolerance_of_rows_that_need_not_hold) {
+    static const double x[2] = {1, 1};
+    int32_t k;
+    for (k = 0; k < 3; ++k) {
+        gproj_system *s = gprojt_square_plus(1, -2);
+        gproj_group group;
+        gproj_term term = gprojt_term(1, -1, 1e6);
+        gproj_result result;
+        gproj_system_add_variables(s, 2, 1, x);
+        memset(&group, 0, sizeof group);
+        group.name = "global", group.global = true, group.schedule = gproj_keep(1);
+        group.kind = k == 0 ? GPROJ_WISH : GPROJ_CONSTRAINT;
+        gproj_system_add_group(s, &group);
+        gproj_system_add_row(s, 1, 1, &term, -1e6, 0);
+        if (k == 1) gproj_system_set_row_weight(s, 1, 0, 0);
+        result = gproj_system_solve(s, 30, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_NEAR(result.tolerance, k == 2 ? 16e6 * DBL_EPSILON : 1e-13, 1e-15);
+        gproj_system_destroy(s);
+    }
+}
+
 GPROJT_TEST(wishes_alone) {
     static const double x[2] = {5, -5};
     gproj_system *s = gprojt_system(NULL, 2, 1, x);
@@ -1605,6 +1628,7 @@ GPROJT_TEST(changes_of_a_callback_come_before_stalling) {
 GPROJT_TEST(int32_max_iterations) {
     static const double start[1] = {5};
     gproj_solve_options options;
+    gproj_result result;
     gproj_system *s = gprojt_conflict();
     GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_STALLED);
     gproj_system_destroy(s);
@@ -1619,6 +1643,14 @@ GPROJT_TEST(int32_max_iterations) {
     gprojt_add_linear(s, 0, 0, 1, -1, 0);
     gproj_system_set_schedule(s, 0, gprojt_schedule(0.1, 1, INT32_MAX));
     GPROJT_CHECK(gproj_system_solve(s, INT32_MAX, NULL).outcome == GPROJ_CONVERGED);
+    gproj_system_destroy(s);
+    s = gprojt_square_plus(5, -4); /* begins in the last iterations, after a wish that no step serves */
+    gproj_system_add_variables(s, 1, 1, NULL);
+    gprojt_add_linear(s, gprojt_add_group(s, "faint", GPROJ_WISH, 1), 1, 1e-160, 1e300, 0);
+    gproj_system_set_schedule(s, 1, gprojt_schedule(1, 1, INT32_MAX - 4));
+    options.nearest = false, options.epsilon = 1e-150;
+    result = gproj_system_solve(s, INT32_MAX, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && result.iterations == INT32_MAX);
     gproj_system_destroy(s);
 }
 
@@ -1776,6 +1808,7 @@ int main(void) {
     GPROJT_RUN(tolerance_has_an_upper_limit);
     GPROJT_RUN(tolerance_knows_large_terms);
     GPROJT_RUN(tolerance_of_global_rows);
+    GPROJT_RUN(tolerance_of_rows_that_need_not_hold);
     GPROJT_RUN(wishes_alone);
     GPROJT_RUN(words_for_every_place);
     GPROJT_RUN(sentences);

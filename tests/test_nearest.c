@@ -287,23 +287,47 @@ GPROJT_TEST(one_side_only) {
     gproj_system_destroy(s);
 }
 
-/* Only the ratios of the wishes' weights matter, and decay and last do not. */
+/* A heavy wish without rows, or without rows that count, does not make the others light. */
+GPROJT_TEST(wishes_without_rows) {
+    static const double a[3] = {1, 1.5, 0.7}, p[3] = {2, 1.1, 0.9};
+    double expected[3];
+    int rows;
+    gprojt_nearest_on_ellipsoid(a, p, expected);
+    for (rows = 0; rows < 2; ++rows) {
+        gproj_system *s = gprojt_one_point(a, p, 1);
+        int32_t heavy = gprojt_add_group(s, "heavy", GPROJ_WISH, 1e9);
+        gproj_result result;
+        gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
+        if (rows) gprojt_add_linear(s, heavy, 0, 1, -5, 0);
+        if (rows) gproj_system_set_row_weight(s, heavy, 0, 0);
+        result = gprojt_solve_nearest(s, 60);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && gprojt_far(gproj_system_values(s), expected) < 1e-6);
+        gproj_system_destroy(s);
+    }
+}
+
+/* Only the ratios of the wishes' weights matter, of groups and of rows, and decay and last do not. */
 GPROJT_TEST(weights_are_ratios) {
     static const double a[3] = {1, 2, 0.6}, p[3] = {1.5, 1.2, 0.9}, q[3] = {0.3, 2, 1.4};
-    double found[3][3];
+    double found[5][3];
     int i;
-    for (i = 0; i < 3; ++i) {
+    for (i = 0; i < 5; ++i) {
         double size = i == 1 ? 100 : 1;
         gproj_system *s = gprojt_one_point(p, p, size);
         int32_t second = gprojt_add_group(s, "second", GPROJ_WISH, 0.5 * size), k;
         for (k = 0; k < 3; ++k) gprojt_add_linear(s, second, k, 1, -q[k], 0);
         gprojt_add_ellipsoid(s, GPROJ_CONSTRAINT, a, 1);
         if (i == 2) gproj_system_set_schedule(s, second, gprojt_schedule(0.5, 0.5, 3));
+        for (k = 0; i > 2 && k < 3; ++k) { /* the rows' own weights count alike */
+            gproj_system_set_row_weight(s, 0, k, i == 3 ? 1e-9 : 1e4);
+            gproj_system_set_row_weight(s, second, k, i == 3 ? 1e-9 : 1e4);
+        }
         GPROJT_CHECK(gprojt_solve_nearest(s, 40).outcome == GPROJ_CONVERGED);
         memcpy(found[i], gproj_system_values(s), sizeof found[i]);
         gproj_system_destroy(s);
     }
     GPROJT_CHECK(gprojt_far(found[0], found[1]) < 1e-9 && gprojt_far(found[0], found[2]) == 0);
+    GPROJT_CHECK(gprojt_far(found[0], found[3]) < 1e-9 && gprojt_far(found[0], found[4]) < 1e-9);
 }
 
 /* At the start nothing is gained and the optimality is 1, however large the rows' coefficients are. */
@@ -1056,6 +1080,7 @@ int main(void) {
     GPROJT_RUN(slides_stay_in_reach);
     GPROJT_RUN(global_rows);
     GPROJT_RUN(one_side_only);
+    GPROJT_RUN(wishes_without_rows);
     GPROJT_RUN(weights_are_ratios);
     GPROJT_RUN(optimality_has_no_unit);
     GPROJT_RUN(moves_less_than_projection);
