@@ -21976,6 +21976,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
         gproji_set_changed(form->system, true);
         return GPROJ_OK;
     }
+    if (!gproji_positions_are_finite(form, error)) return GPROJ_ERROR_NUMBER;
     /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
@@ -22034,7 +22035,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
     if (gproji_begin_question(form, "measure forces", true, error) ||
-        gproji_need_statics(form, "measure forces", error))
+        gproji_need_statics(form, "measure forces", error) || !gproji_positions_are_finite(form, error))
         return m;
     mesh = form->mesh;
     /* 1. Edges: extremes and the load path, the sum of |force| length. */
@@ -22052,7 +22053,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
     }
     /* 2. Vertices: `sum` is the load, then load and forces together. */
     sum = form->statics->work;
-    gproj_get_loads(form, sum, NULL);
+    gproji_loads_at(mesh, &form->statics->loads, 1, 1, mesh->position, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];

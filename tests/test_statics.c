@@ -2212,6 +2212,32 @@ GPROJT_TEST(refusals_of_bounds) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A vertex that was put too far away leaves no loads to be measured, nor to scale given forces by. */
+GPROJT_TEST(questions_need_positions) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 4, 4, 1);
+    double *w = gprojt_numbers(mesh->edge_count), *kept = gprojt_numbers(mesh->edge_count);
+    int32_t v = mesh->vertex_count / 2, e;
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    gproj_forces forces;
+    gproj_error error;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    GPROJT_CHECK(gproj_solve(form, 60, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_get_forces(form, kept, NULL) == GPROJ_OK);
+    mesh->position[3 * v] = 1e21;
+    forces = gproj_measure_forces(form, &error);
+    GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER && error.place == GPROJ_PLACE_VERTEX && error.index == v);
+    GPROJT_CHECK(forces.residual_vertex == -1 && forces.total_load == 0 && forces.max_force == 0);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1;
+    GPROJT_CHECK(gproj_set_forces(form, w, &error) == GPROJ_ERROR_NUMBER && error.index == v);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK);
+    GPROJT_CHECK(memcmp(w, kept, (size_t)mesh->edge_count * sizeof *w) == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w), free(kept);
+}
+
 GPROJT_TEST(no_form) {
     gproj_loads loads = gprojt_no_loads();
     gproj_supports supports = {0, NULL, NULL};
@@ -2510,6 +2536,7 @@ int main(void) {
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);
+    GPROJT_RUN(questions_need_positions);
     GPROJT_RUN(no_form);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(same_bits_for_all_workers);
