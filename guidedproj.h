@@ -18902,7 +18902,7 @@ typedef struct gproji_statics {
     double load_scale; /* internal loads = loads in internal lengths * load_scale */
     int32_t group;     /* equilibrium */
     bool started;      /* the forces have values */
-    double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
+    double lost[2];    /* the part of the loads left by the best first forces: compression, tension; 0: not asked */
 } gproji_statics;
 
 /* A block of the caller's unknowns: see gproj_form_add_unknowns. */
@@ -21901,10 +21901,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
         uniform = lost > gproji_force_lost;
         if (uniform && sign) {
             /* For the verdict: would it hang instead of standing, or stand instead of hanging? */
-            s->lost[0] = gproji_fmin(lost, DBL_MAX);
+            s->lost[sign < 0] = gproji_fmin(lost, DBL_MAX);
             p->opposite = true;
             lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
-            s->lost[1] = gproji_fmin(lost, DBL_MAX);
+            s->lost[sign > 0] = gproji_fmin(lost, DBL_MAX);
         }
         if (uniform) {
             gproji_force_sides(form, p->lower, p->upper);
@@ -22617,12 +22617,13 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
 
 /* Says that a hanging shape was asked to stand, or the opposite, and has been turned over for that. */
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
-    const gproji_statics *s = form->statics;
-    bool stands = gproji_rule_is_on(form, &gproji_compression_rule);
-    if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
+    const double *lost = form->statics ? form->statics->lost : gproji_zero;
+    bool hung = lost[0] > lost[1];
+    /* By the forces that were asked for more than this part is left; if the others leave as much it may be either. */
+    if (!(lost[!hung] > gproji_force_lost && lost[hung] < gproji_fmin(gproji_force_lost, 0.5 * lost[!hung]))) return;
     gproji_tell(result, "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
-                stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
-                stands ? "compression" : "tension", s->lost[0]);
+                hung ? "hung" : "stood", hung ? "tension" : "compression", lost[hung], hung ? "compression" : "tension",
+                lost[!hung]);
 }
 
 /* -- demands that can never hold -- */
@@ -23489,9 +23490,9 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     const gproji_part *part;
     const double *x;
     int32_t e, row = 0;
-    if (!s || !gproji_is_on(form, s->group)) return;
+    if (!s) return;
     s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
+    if (gproji_is_on(form, s->group) && !s->started && gproji_take_balance(form, &form->error, &p)) {
         /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
            wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
            solve for the nearest mesh forces are free. */

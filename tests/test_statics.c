@@ -1614,6 +1614,52 @@ GPROJT_TEST(overturned_shapes_are_told) {
         }
 }
 
+/* The forces that were asked for tell which: also by bounds of the caller's, and where a few edges bear the other sign.
+   The next solve, in which equilibrium is off, is not guided by forces, and nothing is turned over. */
+GPROJT_TEST(overturned_shapes_are_told_by_their_forces) {
+    int way;
+    for (way = 0; way < 2; ++way) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 6, 12, way ? 2 : -2);
+        gproj_loads loads = gprojt_no_loads();
+        int32_t count = 0, *carrying = (int32_t *)malloc((size_t)mesh->edge_count * sizeof *carrying), e, g, groups;
+        gproj_form *form;
+        gproj_system *s;
+        gproj_result result;
+        if (!carrying) abort();
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        s = gproj_form_system(form);
+        for (e = 0; e < mesh->edge_count; ++e)
+            if (gproj_force_variable(form, e) >= 0) carrying[count++] = e;
+        if (way == 0) {
+            gproj_group push;
+            memset(&push, 0, sizeof push);
+            push.name = "push", push.kind = GPROJ_BOUND, push.place = GPROJ_PLACE_EDGE;
+            push.schedule = gproj_keep(1);
+            g = gproj_system_add_group(s, &push);
+            for (e = 0; e < count; ++e)
+                gprojt_add_linear(s, g, gproj_force_variable(form, carrying[e]), 1, 0, carrying[e]);
+        } else {
+            gproj_add_tension(form, count - 1, carrying, 1);
+            gproj_add_compression(form, 1, carrying + count - 1, 1);
+        }
+        result = gproj_solve(form, 60, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(strstr(result.message, way ? "the shape stood: compression" : "the shape hung: tension") != NULL);
+        gproj_set_schedule(form, 0, gproj_keep(0));
+        result = gproj_solve(form, 60, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "turned over"));
+        groups = gproj_system_group_count(s);
+        for (g = 0; g < groups; ++g) {
+            gproj_group_info info = gproj_system_group_info(s, g);
+            if (strcmp(info.name, "force guidance") == 0) GPROJT_CHECK(info.schedule.weight == 0);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(carrying);
+    }
+}
+
 /* A plate that rises to carry has not been turned over: it would not have hung either. */
 GPROJT_TEST(rising_plates_are_not_overturned) {
     int sign;
@@ -2512,6 +2558,7 @@ int main(void) {
     GPROJT_RUN(the_first_edge_may_contradict);
     GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
+    GPROJT_RUN(overturned_shapes_are_told_by_their_forces);
     GPROJT_RUN(rising_plates_are_not_overturned);
     GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
