@@ -1802,7 +1802,7 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
        }
        result = gproj_drag_end(drag);
 
-   After gproj_solve_stop, or a gproj_solve that is refused meanwhile, gproj_drag_end leaves the mesh as it is:
+   After gproj_solve_stop, or another solve, which is refused meanwhile, gproj_drag_end leaves the mesh as it is:
    GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
    gproj_drag_end tells. A state saved before the end has the release's weights. */
 GPROJ_API bool gproj_drag_release(gproj_drag *drag);
@@ -23586,11 +23586,6 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     const gproji_part *part;
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
-    if (form->drag) {
-        solve->loop.result =
-            gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
-        return false;
-    }
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
@@ -23821,7 +23816,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_reset_mesh(form);
         result = gproji_failed_result(gproj_form_error(form));
     }
-    result.attempts = attempt;
+    if (attempt > 1) result.attempts = attempt;
     if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0)
         gproji_tell(&result, "; none of %d attempts ended better", attempt);
     if (away && wished && result.outcome != GPROJ_FAILED) {
@@ -23832,9 +23827,14 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     return result;
 }
 
+/* Refuses a solve, but for the release; that ends where it is, and its result stays. */
+static const char gproji_drag_first[] = "a drag is under way: end or cancel it before the form is solved";
+
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproj_result result;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
+    gproj_solve_stop(form);
+    if (form->drag) return gproji_refused_result(GPROJ_ERROR_STATE, gproji_drag_first);
     result = options && options->smooth ? gproji_solve_smooth(form, iterations, options)
                                         : gproji_attempt(form, iterations, 0, &gproji_beginnings[0], options);
     form->solve.finished = false;
@@ -23845,12 +23845,16 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
                                  gproj_error *error) {
     gproji_error_clear(error);
     if (gproji_form_is_open(form)) {
+        gproj_solve_stop(form);
+        if (form->drag) {
+            gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "%s", gproji_drag_first);
+            return false;
+        }
         form->solve.finished = !gproji_begin_solve(form, iterations, &gproji_beginnings[0], options);
         if (form->solve.on) return true;
     }
     if (gproji_form_ready(form))
-        gproji_fail(error, form->drag ? GPROJ_ERROR_STATE : GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s",
-                    form->solve.loop.result.message);
+        gproji_refuse(error, "%s", form->solve.loop.result.message);
     else
         gproji_pass_on(error, gproj_form_error(form));
     return false;
@@ -23872,7 +23876,7 @@ GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error) {
 }
 
 GPROJ_API void gproj_solve_stop(gproj_form *form) {
-    if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;
+    if (form && form->solve.on && !gproji_is_solving(form->system)) form->solve.on = false;
 }
 
 /* Refuses a frame; if a solve is on it ends with that, for a program may advance for as long as it is on. */
@@ -24716,10 +24720,8 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-    /* 2. A solve is refused during a drag, but for this one. */
-    form->drag = NULL;
+    /* 2. The solve. */
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, &gproji_beginnings[0], NULL);
-    form->drag = drag;
     return form->solve.on;
 }
 

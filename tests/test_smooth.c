@@ -1614,6 +1614,22 @@ GPROJT_TEST(drawn_late_without_memory) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A refused solve has made no attempt. */
+GPROJT_TEST(refused_solves_make_no_attempt) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.smooth = true;
+    gproj_add_planarity(form, 1);
+    result = gproj_solve(form, -1, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && result.attempts == 0);
+    GPROJT_CHECK(gproj_solve(form, 0, &options).attempts == 1);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(changes_are_nearly_the_least);
@@ -1662,6 +1678,7 @@ int main(void) {
     GPROJT_RUN(allocations_fail_where_safeguards_give_way);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(restored_without_memory);
+    GPROJT_RUN(refused_solves_make_no_attempt);
     GPROJT_RUN(drawn_late_without_memory);
     return gprojt_report();
 }
