@@ -1660,6 +1660,33 @@ GPROJT_TEST(overturned_shapes_are_told_by_their_forces) {
     }
 }
 
+/* Equilibrium that holds to the caller's tolerance is found, whatever else does not hold. */
+GPROJT_TEST(equilibrium_within_the_tolerance_is_found) {
+    int strict;
+    for (strict = 0; strict < 2; ++strict) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 2);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_solve_options options;
+        gproj_result result;
+        gproj_group_info info;
+        double to[3];
+        int32_t corner = 0, k;
+        memset(&options, 0, sizeof options);
+        options.tolerance = strict ? 0 : 0.2;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (k = 0; k < 3; ++k) to[k] = mesh->position[k] + (k == 2 ? 2 : 0);
+        gproj_add_targets(form, 1, &corner, to, 1); /* it is fixed as well */
+        result = gproj_solve(form, 1, &options);
+        info = gproj_form_group_info(form, 0);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && info.max > 1e-9 && info.max < 0.2);
+        GPROJT_CHECK((strstr(result.message, "equilibrium was found") != NULL) == strict);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A plate that rises to carry has not been turned over: it would not have hung either. */
 GPROJT_TEST(rising_plates_are_not_overturned) {
     int sign;
@@ -2559,6 +2586,7 @@ int main(void) {
     GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
     GPROJT_RUN(overturned_shapes_are_told_by_their_forces);
+    GPROJT_RUN(equilibrium_within_the_tolerance_is_found);
     GPROJT_RUN(rising_plates_are_not_overturned);
     GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
