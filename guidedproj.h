@@ -23915,7 +23915,9 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
-    return gproji_refused_result(GPROJ_ERROR_STATE, "advance: nothing is under way, call gproj_solve_begin before");
+    return gproji_refused_result(GPROJ_ERROR_STATE,
+                                 form->drag ? gproji_drag_first
+                                            : "advance: nothing is under way, call gproj_solve_begin before");
 }
 
 /* ============================================================================================================
