@@ -19329,11 +19329,11 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
    dense, stream, system, loop, mesh, curve, surface, measure, form.
 
-   Based on Tang et al. (2014), sections 3.1 to 3.3 and 3.5. Each builder appends variables and rows to the form's system,
-   for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each iteration,
-   to phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a length in
-   internal units, which makes weights comparable. The variables in a row's terms never change; a refresh sets numbers
-   only.
+   Based on Tang et al. (2014), sections 3.1 to 3.3 and 3.5. Each builder appends variables and rows to the form's
+   system, for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each
+   iteration, to phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a
+   length in internal units, which makes weights comparable. The variables in a row's terms never change; a refresh sets
+   numbers only.
 
    To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as
    that of gproj_add_midsphere: (1) start values of unknowns, if there are any, at the system's x; (2) a refresh, if it
@@ -21134,7 +21134,7 @@ GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_load
 }
 
 /* The load on each vertex at positions x, 3 numbers each, where lengths are `scale` and forces `force` times those of
-   the caller. The sign of gravity, -z, is here and in the rows (gproji_linearise_weight, gproji_refresh_equilibrium). */
+   the caller. The sign of gravity, -z, is here and in the rows of gproji_refresh_equilibrium. */
 GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, double force, double scale,
                                      const double *x, double *out) {
     double per_length = force / scale, per_area = per_length / scale;
