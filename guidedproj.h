@@ -1802,7 +1802,7 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
        }
        result = gproj_drag_end(drag);
 
-   After gproj_solve_stop, or a gproj_solve that is refused meanwhile, gproj_drag_end leaves the mesh as it is:
+   After gproj_solve_stop, or another solve, which is refused meanwhile, gproj_drag_end leaves the mesh as it is:
    GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
    gproj_drag_end tells. A state saved before the end has the release's weights. */
 GPROJ_API bool gproj_drag_release(gproj_drag *drag);
@@ -18836,8 +18836,6 @@ GPROJ_API gproj_mesh *gproj_mesh_fill(int32_t count, const double *points, const
    >>form   A mesh and its system: life, units, and what all builders share. Uses platform, memory, error,
    vector, stream, system, loop, mesh, curve.
 
-   Based on Tang et al. (2014), sections 3.1 to 3.4.
-
    A form has internal units: internal = (position - centre) * scale, mean edge length 1. Vertex i has the variables
    3i..3i+2; others, such as face normals, come behind when a builder needs them. Each group of a builder has a
    gproji_part: a rule, which says how unknowns start, how rows are refreshed and what a state keeps, and what that
@@ -18919,7 +18917,7 @@ typedef struct gproji_statics {
     double load_scale; /* internal loads = loads in internal lengths * load_scale */
     int32_t group;     /* equilibrium */
     bool started;      /* the forces have values */
-    double lost[2];    /* the part of the loads left by the best first forces, and by those with the other sign */
+    double lost[2];    /* the part of the loads left by the best first forces: compression, tension; 0: not asked */
 } gproji_statics;
 
 /* A block of the caller's unknowns: see gproj_form_add_unknowns. */
@@ -19348,11 +19346,11 @@ GPROJI_INTERNAL bool gproji_select_gliding(const gproj_form *form, int32_t verte
    >>catalogue   The constraints and wishes of a form, one builder each. Uses platform, memory, error, vector,
    dense, stream, system, loop, mesh, curve, surface, measure, form.
 
-   Based on Tang et al. (2014), sections 3.1, 3.2 and 3.5. Each builder appends variables and rows to the form's system,
-   for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each iteration,
-   to phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a length in
-   internal units, which makes weights comparable. The variables in a row's terms never change; a refresh sets numbers
-   only.
+   Based on Tang et al. (2014), sections 3.1 to 3.3 and 3.5. Each builder appends variables and rows to the form's
+   system, for equations phi = 0 that are at most quadratic; those of higher degree are linearised at x before each
+   iteration, to phi(x) + grad phi'(x' - x) = 0, by a refresh beside the builder. Most are scaled so that phi is about a
+   length in internal units, which makes weights comparable. The variables in a row's terms never change; a refresh sets
+   numbers only.
 
    To add a constraint takes two places: its declaration with the equation in >>api-form, and here one paragraph, as
    that of gproj_add_midsphere: (1) start values of unknowns, if there are any, at the system's x; (2) a refresh, if it
@@ -21153,8 +21151,7 @@ GPROJI_INTERNAL double gproji_face_load(const gproj_mesh *mesh, const gproj_load
 }
 
 /* The load on each vertex at positions x, 3 numbers each, where lengths are `scale` and forces `force` times those of
-   the caller. The sign of gravity, -z, is here and in the rows, see
-   gproji_linearise_weight and gproji_refresh_equilibrium. */
+   the caller. The sign of gravity, -z, is here and in the rows of gproji_refresh_equilibrium. */
 GPROJI_INTERNAL void gproji_loads_at(const gproj_mesh *mesh, const gproj_loads *loads, double force, double scale,
                                      const double *x, double *out) {
     double per_length = force / scale, per_area = per_length / scale;
@@ -21918,10 +21915,10 @@ GPROJI_INTERNAL bool gproji_start_forces(gproj_form *form, bool nearest, gproji_
         uniform = lost > gproji_force_lost;
         if (uniform && sign) {
             /* For the verdict: would it hang instead of standing, or stand instead of hanging? */
-            s->lost[0] = gproji_fmin(lost, DBL_MAX);
+            s->lost[sign < 0] = gproji_fmin(lost, DBL_MAX);
             p->opposite = true;
             lost = gproji_lost_load(form, gproji_force_faint, -drawn, p);
-            s->lost[1] = gproji_fmin(lost, DBL_MAX);
+            s->lost[sign > 0] = gproji_fmin(lost, DBL_MAX);
         }
         if (uniform) {
             gproji_force_sides(form, p->lower, p->upper);
@@ -21993,6 +21990,7 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
         gproji_set_changed(form->system, true);
         return GPROJ_OK;
     }
+    if (!gproji_positions_are_finite(form, error)) return GPROJ_ERROR_NUMBER;
     /* 1. The root of the mean square, found without overflow. */
     for (e = 0; e < form->mesh->edge_count; ++e) {
         if (s->force[e] < 0) continue;
@@ -22051,7 +22049,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
     memset(&m, 0, sizeof m);
     m.residual_vertex = -1;
     if (gproji_begin_question(form, "measure forces", true, error) ||
-        gproji_need_statics(form, "measure forces", error))
+        gproji_need_statics(form, "measure forces", error) || !gproji_positions_are_finite(form, error))
         return m;
     mesh = form->mesh;
     /* 1. Edges: extremes and the load path, the sum of |force| length. */
@@ -22069,7 +22067,7 @@ GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error
     }
     /* 2. Vertices: `sum` is the load, then load and forces together. */
     sum = form->statics->work;
-    gproj_get_loads(form, sum, NULL);
+    gproji_loads_at(mesh, &form->statics->loads, 1, 1, mesh->position, sum);
     for (v = 0; v < mesh->vertex_count; ++v) {
         largest = gproji_fmax(largest, gproji_length3(sum + 3 * (size_t)v));
         m.total_load -= sum[3 * (size_t)v + 2];
@@ -22117,13 +22115,12 @@ enum {
     GPROJI_GUARD_LONGER = 2
 };
 
-/* The part's entries are the faces that are guarded, its data the vectorial areas when the solve began, 3 per face. */
-GPROJI_INTERNAL double *gproji_guarded_areas(const gproji_part *part) { return (double *)part->data; }
+/* The part's entries are the faces that are guarded, its data the vectorial areas when the solve began, 3 numbers each.
 
-/* The normal of a guarded face as its variables say at x; a triangle has the first one. */
+   The normal of a guarded face as its variables say at x; a triangle has the first one. */
 GPROJI_INTERNAL void gproji_guard_normal(const gproji_part *part, const double *x, int32_t index, double out[3]) {
     int32_t normal = part->form->normal[part->element[index]];
-    gproji_copy3(normal >= 0 ? x + normal : gproji_guarded_areas(part) + 3 * (size_t)index, out);
+    gproji_copy3(normal >= 0 ? x + normal : (const double *)part->data + 3 * (size_t)index, out);
     gproji_normalise3(out, gproji_zero);
 }
 
@@ -22134,7 +22131,7 @@ GPROJI_INTERNAL void gproji_refresh_guard(void *user, gproj_system *system, int3
     double wanted = progress->tangential ? gproji_guard_small : gproji_guard_wanted;
     int32_t i, count, t;
     for (i = 0; i < part->count; ++i) {
-        double n[3], area = gproji_length3(gproji_guarded_areas(part) + 3 * (size_t)i);
+        double n[3], area = gproji_length3((const double *)part->data + 3 * (size_t)i);
         gproj_term *term = gproji_row_terms(system, group, i, &count);
         gproji_set_row(system, group, i, area > gproji_guard_area ? sqrt(area) : 0, -wanted);
         if (!(area > gproji_guard_area)) continue;
@@ -22149,7 +22146,7 @@ GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, cons
     int32_t i, k;
     if (!gproji_is_on(part->form, part->group)) return false;
     for (i = 0; i < part->count; ++i) {
-        const double *first = gproji_guarded_areas(part) + 3 * (size_t)i;
+        const double *first = (const double *)part->data + 3 * (size_t)i;
         double axis[2][3], was[3], is[3];
         if (gproji_length3(first) <= gproji_guard_area) continue;
         gproji_area_vector(part->form->mesh, before, part->element[i], was);
@@ -22166,7 +22163,7 @@ GPROJI_INTERNAL bool gproji_refuse_turned(void *user, const double *before, cons
 
 GPROJI_INTERNAL void gproji_pass_guard(gproji_part *part, gproji_stream *stream, gproji_passing passing) {
     if (!passing) return;
-    gproji_pass_doubles(stream, gproji_guarded_areas(part), 3 * (size_t)part->count);
+    gproji_pass_doubles(stream, (double *)part->data, 3 * (size_t)part->count);
 }
 
 static const gproji_acts gproji_guard_acts = {gproji_refresh_guard, NULL, NULL, gproji_pass_guard};
@@ -22208,8 +22205,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
    All faces can be whole and yet lie on each other, so planar faces with the normals m and n at an edge keep
        m'n >= c                                                                                                      (3)
    by two rows, each with one of the normals as it is: a row with both would join the elements of >>schur.
-   Corners and edges without a size at the beginning, and bends that are as good as folded, get no rows. Bends of 90
-   degrees and more have less room before they fold, and c lies in the same part of it.
+   Corners and edges without a size at the beginning, bends there, and those that are as good as folded get no rows.
+   Bends of 90 degrees and more have less room before they fold, and c lies in the same part of it.
 
    A row asks for the size that its corner, edge or bend has when it is linearised, at most the part above, at least a
    floor: corners may shrink as far as they must, but slowly, and do not hold up the constraints. If the constraints
@@ -22285,15 +22282,16 @@ GPROJI_INTERNAL void gproji_corner_normal(const gproj_form *form, const double *
     gproji_normalise3(out, gproji_zero);
 }
 
-/* The cosine of the bend at an edge, by the variables of normals; 1 without two of these, or if it was as good as
-   folded when the solve began: then it is let go. If it was sharper than a right angle then, with the cosine
-   *sharp < 0, what is between that and a fold counts as what is between a right angle and a fold. */
+/* The cosine of the bend at an edge, by the variables of normals; 1 for one that is let go: without two of these, at an
+   edge that is let go, or as good as folded when the solve began. If it was sharper than a right angle then, with the
+   cosine *sharp < 0, what is between that and a fold counts as what is between a right angle and a fold. */
 GPROJI_INTERNAL double gproji_dihedral(const gproji_part *part, const double *x, int32_t edge, double *sharp) {
     const gproj_form *form = part->form;
     const int32_t *face = form->mesh->face + 2 * (size_t)edge;
     const double *axis = gproji_corners_of(part)->axis;
     *sharp = 0;
     if (face[1] < 0 || form->normal[face[0]] < 0 || form->normal[face[1]] < 0) return 1; /* face[0] is always one */
+    if (!(gproji_corners_of(part)->length[edge] > 0)) return 1;
     *sharp = gproji_fmin(gproji_dot3(axis + 3 * (size_t)face[0], axis + 3 * (size_t)face[1]), 0);
     if (!(*sharp > 0.98 * gproji_dihedral_folded)) return 1;
     return (gproji_dot3(x + form->normal[face[0]], x + form->normal[face[1]]) - *sharp) /
@@ -22597,8 +22595,7 @@ GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
 
 /* -- equilibrium -- */
 
-/* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether equilibrium, or a
-   bound on forces, does not hold. */
+/* Says that no equilibrium was found, which kind, and the vertices that lack it. Returns whether it does not hold. */
 GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     bool up = gproji_rule_is_on(form, &gproji_compression_rule), down = gproji_rule_is_on(form, &gproji_tension_rule);
@@ -22606,9 +22603,10 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
     const char *planar = gproji_is_on(form, form->planarity) ? " with planar faces" : "";
     double phi[3] = {0, 0, 0};
     int32_t vertex[3] = {-1, -1, -1}, r, k;
+    double noticeable = gproji_fmax(1e-9, result->tolerance);
     const gproji_group *g;
     gproj_forces forces;
-    if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > 1e-9))
+    if (!s || !gproji_is_on(form, s->group) || !(gproj_system_group_info(form->system, s->group).max > noticeable))
         return false;
     forces = gproj_measure_forces(form, NULL);
     /* The three rows with the largest |phi|, of different vertices; -1 if there are fewer. */
@@ -22633,12 +22631,13 @@ GPROJI_INTERNAL bool gproji_tell_unbalanced(gproj_form *form, gproj_result *resu
 
 /* Says that a hanging shape was asked to stand, or the opposite, and has been turned over for that. */
 GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result *result) {
-    const gproji_statics *s = form->statics;
-    bool stands = gproji_rule_is_on(form, &gproji_compression_rule);
-    if (!s || !(s->lost[0] > gproji_force_lost && s->lost[1] < 0.5 * s->lost[0])) return;
+    const double *lost = form->statics ? form->statics->lost : gproji_zero;
+    bool hung = lost[0] > lost[1];
+    /* By the forces that were asked for more than this part is left; if the others leave as much it may be either. */
+    if (!(lost[!hung] > gproji_force_lost && lost[hung] < gproji_fmin(gproji_force_lost, 0.5 * lost[!hung]))) return;
     gproji_tell(result, "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
-                stands ? "hung" : "stood", stands ? "tension" : "compression", s->lost[1],
-                stands ? "compression" : "tension", s->lost[0]);
+                hung ? "hung" : "stood", hung ? "tension" : "compression", lost[hung], hung ? "compression" : "tension",
+                lost[!hung]);
 }
 
 /* -- demands that can never hold -- */
@@ -23169,8 +23168,8 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
 }
 
 /* Doubts equilibrium to the tolerance if the loads themselves are below it: on a mesh that has shrunk to a point, or
-   beside huge forces. */
-GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
+   beside huge forces. Returns whether there is a doubt. */
+GPROJI_INTERNAL bool gproji_doubt_equilibrium(gproj_form *form, gproj_result *result) {
     static const double noticeable = 1e-3;
     const gproji_statics *s = form->statics;
     const gproji_group *g;
@@ -23179,7 +23178,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
     double *load, worst = 0, largest = 0, part;
     bool follow; /* loads that vanish with the shape */
     int32_t r, e;
-    if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return;
+    if (!s || !gproji_is_on(form, s->group) || result->outcome != GPROJ_CONVERGED) return false;
     /* 1. The largest part of a load on a vertex, in the form's units, and how much of it is unbalanced. */
     loads = &s->loads, load = s->work;
     gproji_loads_at(form->mesh, loads, s->load_scale, form->scale, gproj_system_values(form->system), load);
@@ -23202,6 +23201,7 @@ GPROJI_INTERNAL void gproji_doubt_equilibrium(gproj_form *form, gproj_result *re
                       "unbalanced; where the mesh has shrunk to a point, fix vertices or let them glide",
                       part);
     }
+    return result->outcome != GPROJ_CONVERGED;
 }
 
 /* Is there a group with a weight whose rows hold the mesh, so that fairness cannot shrink it to a point? A bound holds
@@ -23294,14 +23294,29 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_asymptotic(form, result);
 }
 
+/* Marks the elements that have rows with a weight by this rule: 1, others 0. */
+GPROJI_INTERNAL void gproji_mark_elements(const gproj_form *form, const gproji_rule *rule, int32_t count,
+                                          double *marked) {
+    const gproji_part *part;
+    int32_t r;
+    memset(marked, 0, (size_t)count * sizeof *marked);
+    for (part = form->part; part; part = part->next) {
+        const gproji_group *g = gproji_group_at(form->system, part->group);
+        if (part->rule != rule || !gproji_is_on(form, part->group)) continue;
+        for (r = 0; r < g->row_count; ++r)
+            if (g->row[r].weight > 0) marked[g->row[r].element] = 1;
+    }
+}
+
 /* Says which faces are not planar: circularity alone puts the corners of a face on a sphere. */
 GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
-    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3];
+    double unit = gproj_mesh_mean_edge_length(mesh), worst = 1e-6, mean[3], normal[3], *circular = form->work.area;
     int32_t f, face = -1, count = 0;
+    gproji_mark_elements(form, &gproji_circularity_rule, mesh->face_count, circular);
     for (f = 0; unit > 0 && f < mesh->face_count; ++f) {
         double off;
-        if (form->axis[f] < 0) continue;
+        if (circular[f] == 0) continue;
         gproji_face_plane(mesh, mesh->position, f, mean, normal);
         off = gproji_face_planarity(mesh, f, mean, normal) / unit;
         count += off > 1e-6;
@@ -23318,10 +23333,11 @@ GPROJI_INTERNAL void gproji_tell_spheres(const gproj_form *form, gproj_result *r
    the rows of a cone hold with any angles. */
 GPROJI_INTERNAL void gproji_tell_flat_cones(const gproj_form *form, gproj_result *result) {
     const gproj_mesh *mesh = form->mesh;
-    double worst = 1e-6;
+    double worst = 1e-6, *conical = form->work.gradient;
     int32_t v, vertex = -1, count = 0;
+    gproji_mark_elements(form, &gproji_conicality_rule, mesh->vertex_count, conical);
     for (v = 0; v < mesh->vertex_count; ++v) {
-        bool four = form->cone[v] >= 0 && gproj_mesh_valence(mesh, v) == 4;
+        bool four = conical[v] != 0 && gproj_mesh_valence(mesh, v) == 4;
         double off = four ? fabs(gproji_angle_sum(mesh, mesh->position, v, true)) : 0;
         count += off > 1e-6;
         if (off > worst) worst = off, vertex = v;
@@ -23505,9 +23521,9 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
     const gproji_part *part;
     const double *x;
     int32_t e, row = 0;
-    if (!s || !gproji_is_on(form, s->group)) return;
+    if (!s) return;
     s->lost[0] = s->lost[1] = 0;
-    if (!s->started && gproji_take_balance(form, &form->error, &p)) {
+    if (gproji_is_on(form, s->group) && !s->started && gproji_take_balance(form, &form->error, &p)) {
         /* Uniform forces shall bend the shape first: they are drawn to their start, with weights 0.3^n, n <= 5; beside
            wishes as long as these guide, for a shape that carries nothing is nearest to itself without forces. In a
            solve for the nearest mesh forces are free. */
@@ -23601,11 +23617,6 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     const gproji_part *part;
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
-    if (form->drag) {
-        solve->loop.result =
-            gproji_refused_result(GPROJ_ERROR_STATE, "a drag is under way: end or cancel it before the form is solved");
-        return false;
-    }
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
@@ -23626,7 +23637,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
                                           gproji_max(guided, GPROJI_GUARD_LONGER) + GPROJI_GUARD_LONGER));
     for (i = 0; part && i < part->count; ++i)
         gproji_area_vector(form->mesh, gproj_system_values(form->system), part->element[i],
-                           gproji_guarded_areas(part) + 3 * (size_t)i);
+                           (double *)part->data + 3 * (size_t)i);
     corners = whole && (smooth || (nearest && iterations > GPROJI_SAFE_MOST));
     part = gproji_schedule_own(form, GPROJI_OWN_CORNERS, gproj_keep(corners ? gproji_corner_weight : 0));
     if (part) gproji_begin_corners(part);
@@ -23688,7 +23699,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     }
     /* 2. The steps. */
     ended = gproji_run(loop, seconds);
-    if (ended) gproji_doubt_equilibrium(form, result);
+    doubted = ended && gproji_doubt_equilibrium(form, result);
     if (ended) form->solve.on = false, form->solve.finished = true;
     if (result->outcome == GPROJ_FAILED) return *result;
     if (gproji_is_beyond(form)) {
@@ -23712,7 +23723,6 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
         if (loop->hopeful && !result->message[length]) /* nothing is known against it */
             gproji_tell(result, gproji_more_iterations);
         if (!(result->residual <= result->tolerance)) gproji_tell_asymptotic(form, result);
-        doubted = result->outcome == GPROJ_STALLED && result->residual <= result->tolerance && form->statics;
         if (gproji_tell_unbalanced(form, result) || doubted) gproji_tell_obstacles(form, result);
     }
     gproji_tell_spoiled(form, result);
@@ -23836,7 +23846,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         gproji_reset_mesh(form);
         result = gproji_failed_result(gproj_form_error(form));
     }
-    result.attempts = attempt;
+    if (attempt > 1) result.attempts = attempt;
     if (attempt > 1 && result.outcome <= GPROJ_STALLED && gproji_lack(&result) > 0)
         gproji_tell(&result, "; none of %d attempts ended better", attempt);
     if (away && wished && result.outcome != GPROJ_FAILED) {
@@ -23847,9 +23857,14 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     return result;
 }
 
+/* Refuses a solve, but for the release; that ends where it is, and its result stays. */
+static const char gproji_drag_first[] = "a drag is under way: end or cancel it before the form is solved";
+
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
     gproj_result result;
     if (!gproji_form_is_open(form)) return gproji_failed_result(gproj_form_error(form));
+    gproj_solve_stop(form);
+    if (form->drag) return gproji_refused_result(GPROJ_ERROR_STATE, gproji_drag_first);
     result = options && options->smooth ? gproji_solve_smooth(form, iterations, options)
                                         : gproji_attempt(form, iterations, 0, &gproji_beginnings[0], options);
     form->solve.finished = false;
@@ -23860,12 +23875,16 @@ GPROJ_API bool gproj_solve_begin(gproj_form *form, int32_t iterations, const gpr
                                  gproj_error *error) {
     gproji_error_clear(error);
     if (gproji_form_is_open(form)) {
+        gproj_solve_stop(form);
+        if (form->drag) {
+            gproji_fail(error, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "%s", gproji_drag_first);
+            return false;
+        }
         form->solve.finished = !gproji_begin_solve(form, iterations, &gproji_beginnings[0], options);
         if (form->solve.on) return true;
     }
     if (gproji_form_ready(form))
-        gproji_fail(error, form->drag ? GPROJ_ERROR_STATE : GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "%s",
-                    form->solve.loop.result.message);
+        gproji_refuse(error, "%s", form->solve.loop.result.message);
     else
         gproji_pass_on(error, gproj_form_error(form));
     return false;
@@ -23887,7 +23906,7 @@ GPROJ_API size_t gproj_solve_memory(gproj_form *form, gproj_error *error) {
 }
 
 GPROJ_API void gproj_solve_stop(gproj_form *form) {
-    if (form && form->system && !gproji_is_solving(form->system)) form->solve.on = form->solve.finished = false;
+    if (form && form->solve.on && !gproji_is_solving(form->system)) form->solve.on = false;
 }
 
 /* Refuses a frame; if a solve is on it ends with that, for a program may advance for as long as it is on. */
@@ -23913,7 +23932,9 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
                                  "advance: variables, groups or rows were added since the solve began, so begin anew");
     if (solve->on) return gproji_run_solve(form, seconds);
     if (solve->finished) return solve->loop.result;
-    return gproji_refused_result(GPROJ_ERROR_STATE, "advance: nothing is under way, call gproj_solve_begin before");
+    return gproji_refused_result(GPROJ_ERROR_STATE,
+                                 form->drag ? gproji_drag_first
+                                            : "advance: nothing is under way, call gproj_solve_begin before");
 }
 
 /* ============================================================================================================
@@ -24731,10 +24752,8 @@ GPROJ_API bool gproj_drag_release(gproj_drag *drag) {
                 gproj_system_set_row(s, group, row, NULL, -x[row]);
             }
     }
-    /* 2. A solve is refused during a drag, but for this one. */
-    form->drag = NULL;
+    /* 2. The solve. */
     form->solve.finished = !gproji_begin_solve(form, GPROJI_DRAG_ITERATIONS, &gproji_beginnings[0], NULL);
-    form->drag = drag;
     return form->solve.on;
 }
 

@@ -1338,6 +1338,56 @@ GPROJT_TEST(releases_in_frames) {
     }
 }
 
+/* Another solve is refused during a release, which ends where it is, and tells after how many iterations. */
+GPROJT_TEST(releases_end_with_other_solves) {
+    int way;
+    for (way = 0; way < 3; ++way) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+        int32_t v = gprojt_middle(stage.mesh);
+        gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+        gproj_solve_options options;
+        gproj_result result;
+        gproj_error error;
+        double *now;
+        memset(&options, 0, sizeof options);
+        options.smooth = way == 1;
+        gprojt_pull(&stage, drag, v, 0.4);
+        GPROJT_CHECK(gproj_drag_release(drag));
+        gproj_solve_advance(stage.form, 0);
+        gproj_solve_advance(stage.form, 0);
+        now = gprojt_keep(stage.mesh);
+        if (way < 2) {
+            result = gproj_solve(stage.form, 10, &options);
+            GPROJT_CHECK(result.outcome == GPROJ_FAILED && result.attempts == 0);
+        } else {
+            GPROJT_CHECK(!gproj_solve_begin(stage.form, 10, NULL, &error) && error.code == GPROJ_ERROR_STATE);
+        }
+        GPROJT_CHECK(!gproj_solve_is_on(stage.form));
+        result = gproj_drag_end(drag);
+        GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 2 && result.residual > 0);
+        GPROJT_CHECK(strstr(result.message, "after 2 iterations") && gprojt_unmoved(stage.mesh, now));
+        free(now);
+        gprojt_clear_stage(&stage);
+    }
+}
+
+/* A release that has ended is neither stopped nor refused any more. */
+GPROJT_TEST(releases_that_have_ended) {
+    gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), GPROJT_PLANAR, NULL);
+    int32_t v = gprojt_middle(stage.mesh);
+    gproj_drag *drag = gprojt_grab(&stage, 1, &v);
+    gproj_result verdict, result;
+    gprojt_pull(&stage, drag, v, 0.4);
+    GPROJT_CHECK(gproj_drag_release(drag));
+    do verdict = gproj_solve_advance(stage.form, 0);
+    while (gproj_solve_is_on(stage.form));
+    gproj_solve_stop(stage.form);
+    GPROJT_CHECK(gproj_solve(stage.form, 10, NULL).outcome == GPROJ_FAILED);
+    result = gproj_drag_end(drag);
+    GPROJT_CHECK(result.outcome == verdict.outcome && strcmp(result.message, verdict.message) == 0);
+    gprojt_clear_stage(&stage);
+}
+
 /* A release may be cancelled, and stopped; the wishes have their weights again afterwards. */
 GPROJT_TEST(releases_cancelled_and_stopped) {
     int stopped;
@@ -1534,6 +1584,8 @@ int main(void) {
     GPROJT_RUN(what_cannot_be_linearised);
     GPROJT_RUN(wishes_at_the_release);
     GPROJT_RUN(releases_in_frames);
+    GPROJT_RUN(releases_end_with_other_solves);
+    GPROJT_RUN(releases_that_have_ended);
     GPROJT_RUN(releases_cancelled_and_stopped);
     GPROJT_RUN(handles_with_reach);
     GPROJT_RUN(handles_of_differences);

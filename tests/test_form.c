@@ -2781,6 +2781,23 @@ GPROJT_TEST(spheres_are_no_circles) {
         }
         GPROJT_CHECK(strstr(told[0], "mean edge lengths)") && !strcmp(told[0], told[1]));
     }
+    { /* faces that are let go need not be circles */
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+        gproj_form *form;
+        gproj_result result;
+        int32_t face = 0, planarity, group, v;
+        double none = 0;
+        for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = v == 0 ? 0.3 : 0;
+        form = gproj_form_create(mesh, NULL);
+        planarity = gproj_add_planarity(form, 1), group = gproj_add_circularity(form, 1);
+        gproj_add_fixed(form, 0, NULL, 1);
+        gproj_set_element_weights(form, planarity, 1, &face, &none);
+        gproj_set_element_weights(form, group, 1, &face, &none);
+        result = gproj_solve(form, 20, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "spheres"));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
     { /* one face alone, and one without extent */
         static const double p[12] = {0, 0, 0, 1, 0, 0.3, 1, 1, 0, 0, 1, 0.3};
         static const int32_t degree = 4, corner[4] = {0, 1, 2, 3};

@@ -1614,6 +1614,53 @@ GPROJT_TEST(drawn_late_without_memory) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A ridge whose faces are pulled together: bends at its edges are kept, but not that at an edge of next to no length, which
+   is let go and would have a row that never acts. */
+GPROJT_TEST(bends_of_short_edges_are_let_go) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 6));
+    gproj_solve_options options = gprojt_smooth();
+    int32_t handle[14], v, k, count = 0, g, r, rows = 0;
+    double to[42];
+    gproj_form *form;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double *p = mesh->position + 3 * v, x = v % 5 - 2.0, y = v / 5;
+        p[0] = 0.7 * x, p[1] = v / 5 == 3 ? 2 + 5e-4 : y, p[2] = -0.72 * fabs(x);
+        if (v % 5 == 0 || v % 5 == 4) handle[count++] = v;
+    }
+    form = gproj_form_create(mesh, NULL);
+    for (k = 0; k < count; ++k) {
+        const double *p = mesh->position + 3 * handle[k];
+        to[3 * k] = 0.3 * p[0], to[3 * k + 1] = p[1], to[3 * k + 2] = p[2] + 0.02 * (k % 3);
+    }
+    gproj_add_planarity(form, 1);
+    gproj_add_targets(form, count, handle, to, 1);
+    gproj_solve(form, 8, &options);
+    for (g = 0; g < gproj_system_group_count(gproj_form_system(form)); ++g) {
+        gproj_group_info info = gproj_form_group_info(form, g);
+        if (strcmp(info.name, "corners") != 0) continue;
+        for (r = 0; r < info.rows; ++r, ++rows) GPROJT_CHECK(gprojt_inside_row_weight(form, g, r) > 0);
+    }
+    GPROJT_CHECK(rows > 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A refused solve has made no attempt. */
+GPROJT_TEST(refused_solves_make_no_attempt) {
+    gproj_mesh *mesh = gprojt_noisy(0, 4, 0.1, 1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&options, 0, sizeof options);
+    options.smooth = true;
+    gproj_add_planarity(form, 1);
+    result = gproj_solve(form, -1, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_FAILED && result.attempts == 0);
+    GPROJT_CHECK(gproj_solve(form, 0, &options).attempts == 1);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(changes_are_nearly_the_least);
@@ -1662,6 +1709,8 @@ int main(void) {
     GPROJT_RUN(allocations_fail_where_safeguards_give_way);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(restored_without_memory);
+    GPROJT_RUN(refused_solves_make_no_attempt);
+    GPROJT_RUN(bends_of_short_edges_are_let_go);
     GPROJT_RUN(drawn_late_without_memory);
     return gprojt_report();
 }

@@ -1614,6 +1614,79 @@ GPROJT_TEST(overturned_shapes_are_told) {
         }
 }
 
+/* The forces that were asked for tell which: also by bounds of the caller's, and where a few edges bear the other sign.
+   The next solve, in which equilibrium is off, is not guided by forces, and nothing is turned over. */
+GPROJT_TEST(overturned_shapes_are_told_by_their_forces) {
+    int way;
+    for (way = 0; way < 2; ++way) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 6, 12, way ? 2 : -2);
+        gproj_loads loads = gprojt_no_loads();
+        int32_t count = 0, *carrying = (int32_t *)malloc((size_t)mesh->edge_count * sizeof *carrying), e, g, groups;
+        gproj_form *form;
+        gproj_system *s;
+        gproj_result result;
+        if (!carrying) abort();
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        s = gproj_form_system(form);
+        for (e = 0; e < mesh->edge_count; ++e)
+            if (gproj_force_variable(form, e) >= 0) carrying[count++] = e;
+        if (way == 0) {
+            gproj_group push;
+            memset(&push, 0, sizeof push);
+            push.name = "push", push.kind = GPROJ_BOUND, push.place = GPROJ_PLACE_EDGE;
+            push.schedule = gproj_keep(1);
+            g = gproj_system_add_group(s, &push);
+            for (e = 0; e < count; ++e)
+                gprojt_add_linear(s, g, gproj_force_variable(form, carrying[e]), 1, 0, carrying[e]);
+        } else {
+            gproj_add_tension(form, count - 1, carrying, 1);
+            gproj_add_compression(form, 1, carrying + count - 1, 1);
+        }
+        result = gproj_solve(form, 60, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        GPROJT_CHECK(strstr(result.message, way ? "the shape stood: compression" : "the shape hung: tension") != NULL);
+        gproj_set_schedule(form, 0, gproj_keep(0));
+        result = gproj_solve(form, 60, NULL);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && !strstr(result.message, "turned over"));
+        groups = gproj_system_group_count(s);
+        for (g = 0; g < groups; ++g) {
+            gproj_group_info info = gproj_system_group_info(s, g);
+            if (strcmp(info.name, "force guidance") == 0) GPROJT_CHECK(info.schedule.weight == 0);
+        }
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(carrying);
+    }
+}
+
+/* Equilibrium that holds to the caller's tolerance is found, whatever else does not hold. */
+GPROJT_TEST(equilibrium_within_the_tolerance_is_found) {
+    int strict;
+    for (strict = 0; strict < 2; ++strict) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 4, 8, 2);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_form *form;
+        gproj_solve_options options;
+        gproj_result result;
+        gproj_group_info info;
+        double to[3];
+        int32_t corner = 0, k;
+        memset(&options, 0, sizeof options);
+        options.tolerance = strict ? 0 : 0.2;
+        loads.density = 1;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        for (k = 0; k < 3; ++k) to[k] = mesh->position[k] + (k == 2 ? 2 : 0);
+        gproj_add_targets(form, 1, &corner, to, 1); /* it is fixed as well */
+        result = gproj_solve(form, 1, &options);
+        info = gproj_form_group_info(form, 0);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT && info.max > 1e-9 && info.max < 0.2);
+        GPROJT_CHECK((strstr(result.message, "equilibrium was found") != NULL) == strict);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* A plate that rises to carry has not been turned over: it would not have hung either. */
 GPROJT_TEST(rising_plates_are_not_overturned) {
     int sign;
@@ -2212,6 +2285,32 @@ GPROJT_TEST(refusals_of_bounds) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A vertex that was put too far away leaves no loads to be measured, nor to scale given forces by. */
+GPROJT_TEST(questions_need_positions) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 4, 4, 1);
+    double *w = gprojt_numbers(mesh->edge_count), *kept = gprojt_numbers(mesh->edge_count);
+    int32_t v = mesh->vertex_count / 2, e;
+    gproj_loads loads = gprojt_no_loads();
+    gproj_form *form;
+    gproj_forces forces;
+    gproj_error error;
+    loads.density = 1;
+    form = gprojt_pinned_form(mesh, NULL, &loads);
+    GPROJT_CHECK(gproj_solve(form, 60, NULL).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_get_forces(form, kept, NULL) == GPROJ_OK);
+    mesh->position[3 * v] = 1e21;
+    forces = gproj_measure_forces(form, &error);
+    GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER && error.place == GPROJ_PLACE_VERTEX && error.index == v);
+    GPROJT_CHECK(forces.residual_vertex == -1 && forces.total_load == 0 && forces.max_force == 0);
+    for (e = 0; e < mesh->edge_count; ++e) w[e] = 1;
+    GPROJT_CHECK(gproj_set_forces(form, w, &error) == GPROJ_ERROR_NUMBER && error.index == v);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK);
+    GPROJT_CHECK(memcmp(w, kept, (size_t)mesh->edge_count * sizeof *w) == 0);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(w), free(kept);
+}
+
 GPROJT_TEST(no_form) {
     gproj_loads loads = gprojt_no_loads();
     gproj_supports supports = {0, NULL, NULL};
@@ -2486,6 +2585,8 @@ int main(void) {
     GPROJT_RUN(the_first_edge_may_contradict);
     GPROJT_RUN(vertices_without_weight_carry_nothing);
     GPROJT_RUN(overturned_shapes_are_told);
+    GPROJT_RUN(overturned_shapes_are_told_by_their_forces);
+    GPROJT_RUN(equilibrium_within_the_tolerance_is_found);
     GPROJT_RUN(rising_plates_are_not_overturned);
     GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
@@ -2510,6 +2611,7 @@ int main(void) {
     GPROJT_RUN(refused_questions_leave_the_form);
     GPROJT_RUN(refusals_without_equilibrium);
     GPROJT_RUN(refusals_of_bounds);
+    GPROJT_RUN(questions_need_positions);
     GPROJT_RUN(no_form);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(same_bits_for_all_workers);
