@@ -22588,10 +22588,10 @@ GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
 
    The loop's sentence names the row that is worst, and the groups that conflict (gproji_advise). A form knows more: why
    equilibrium was not found and which vertices lack it (gproji_tell_unbalanced), which demands could never hold
-   (gproji_tell_obstacles: of forces; gproji_tell_held, gproji_tell_planes, gproji_tell_asymptotic: of flat
-   faces; gproji_tell_angles: of circular ones), and which damage was done on the way (gproji_tell_spoiled). Each
-   gproji_tell_ appends a clause to the sentence, or nothing; gproji_doubt_equilibrium replaces sentence and outcome.
-   They run when a solve has ended, so the system's step and saved x are free for work. */
+   (gproji_tell_obstacles, gproji_tell_overhang: of forces; gproji_tell_held, gproji_tell_planes,
+   gproji_tell_asymptotic: of flat faces; gproji_tell_angles: of circular ones), and which damage was done on the way
+   (gproji_tell_spoiled). Each gproji_tell_ appends a clause to the sentence, or nothing; gproji_doubt_equilibrium
+   replaces sentence and outcome. They run when a solve has ended, so the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
@@ -22638,6 +22638,46 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
     gproji_tell(result, "; as it was the shape %s: %s would have left %g of its loads, %s %g, so it was turned over",
                 hung ? "hung" : "stood", hung ? "tension" : "compression", lost[hung], hung ? "compression" : "tension",
                 lost[!hung]);
+}
+
+/* Says that a vertex stood outside of the supports as seen from above, if all forces have one sign and loads are
+   weights: there sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so
+   none can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
+GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
+    static const char *const sign[2] = {"compression", "tension"};
+    const gproji_statics *s = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    int32_t vertex = -1, bounded[2] = {0, 0}, edges = 0, e, v, k; /* bounded: rows of either sign */
+    double most = 1;                                              /* mean edge lengths */
+    const gproji_part *part;
+    if (!s || !gproji_is_on(form, s->group)) return;
+    for (part = form->part; part; part = part->next)
+        if (gproji_is_on(form, part->group) &&
+            (part->rule == &gproji_compression_rule || part->rule == &gproji_tension_rule))
+            bounded[part->rule == &gproji_tension_rule] += gproji_group_at(form->system, part->group)->row_count;
+    for (e = 0; e < mesh->edge_count; ++e) edges += s->force[e] >= 0;
+    if (bounded[0] < edges && bounded[1] < edges) return;
+    for (v = 0; s->loads.point_load && v < mesh->vertex_count; ++v)
+        if (s->loads.point_load[3 * (size_t)v] != 0 || s->loads.point_load[3 * (size_t)v + 1] != 0) return;
+    for (k = 0; k < 32; ++k) {
+        double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k);
+        double supported = -HUGE_VAL, out = -HUGE_VAL;
+        int32_t farthest = -1;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            bool supports = s->axes[v] != GPROJI_AXES;
+            const double *at = (supports ? gproj_system_values(form->system) : form->original) + 3 * (size_t)v;
+            double here = c * at[0] + d * at[1];
+            if (mesh->vertex_halfedge[v] < 0) continue;
+            if (supports) supported = gproji_fmax(supported, here);
+            if (!supports && here > out) out = here, farthest = v;
+        }
+        if (out - supported > most) most = out - supported, vertex = farthest;
+    }
+    if (vertex >= 0 && most < HUGE_VAL) /* there are supports */
+        gproji_tell(result,
+                    "; %s alone keeps all vertices between the supports as seen from above, but vertex %d was "
+                    "%g mean edges outside: support it, or allow %s",
+                    sign[bounded[0] < edges], vertex, most, sign[bounded[0] >= edges]);
 }
 
 /* -- demands that can never hold -- */
@@ -23153,6 +23193,7 @@ GPROJI_INTERNAL void gproji_tell_obstacles(gproj_form *form, gproj_result *resul
                     "; edge %d is to have both signs: compression only, tension only and bounds of stresses contradict",
                     edge);
     } else {
+        gproji_tell_overhang(form, result);
         memset(&most, 0, sizeof most);
         most.max = 1e-6;
         for (g = 0; g < gproj_system_group_count(form->system); ++g) {
@@ -23273,7 +23314,10 @@ GPROJI_INTERNAL void gproji_tell_spoiled(const gproj_form *form, gproj_result *r
     /* The reason, if it is known; all kinds with the first place of each: "2 faces turned over (first: face 17), 1 edge
        ..."; advice, if there is no reason. */
     length = strlen(result->message);
-    if (result->outcome == GPROJ_CONVERGED) gproji_tell_held(form, result);
+    if (result->outcome == GPROJ_CONVERGED) {
+        gproji_tell_held(form, result);
+        gproji_tell_overhang(form, result);
+    }
     known = result->message[length] != 0;
     gproji_tell(result, "; but the mesh is spoiled: ");
     for (kind = 0; kind < GPROJI_DAMAGE_COUNT; ++kind) {
@@ -23771,15 +23815,6 @@ GPROJI_INTERNAL void gproji_return_to(gproj_form *form, const double *end, doubl
     gproji_store_positions(form, form->before);
 }
 
-/* How a smooth attempt begins, numbered from 0. If the one before has ended on a spoiled mesh on which all holds, there
-   may be a whole one nearby or, in the end, one that is fairer; otherwise stiffer steps may lead on: *stiffer counts
-   these. */
-GPROJI_INTERNAL gproji_beginning gproji_choose_beginning(int32_t number, bool holds, int32_t *stiffer) {
-    if (number == 0) return gproji_beginnings[0];
-    if (number == 1 && holds) return gproji_beginnings[GPROJI_NEARBY];
-    return gproji_beginnings[number == GPROJI_ATTEMPTS_MOST - 1 ? GPROJI_FAIR : GPROJI_STIFF + (*stiffer)++];
-}
-
 /* A solve that may begin again in another way: the beginning of a path decides its end. The best end counts. All
    attempts share the time, and the smooth ones the iterations: if the first looks for the nearest mesh, those that
    follow have three times as many. */
@@ -23793,7 +23828,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     bool here = true, away = false, wished; /* the best end is where x is; it is not one of the nearest solve */
     gproj_solve_options how = *options;
     gproj_result result;
-    int32_t first = nearest ? 1 : 0, attempt = 1, stiffer = 0, used, left, k;
+    int32_t first = nearest ? 1 : 0, attempt = 1, stiff = GPROJI_STIFF, used, left, k;
     gproji_pool pool;
     gproji_pool_start(&pool, &form->heap);
     start = (double *)gproji_pool_copy(&pool, x, count, sizeof *x);
@@ -23818,8 +23853,15 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
         if (left < GPROJI_ATTEMPT_LEAST || (attempt == first + GPROJI_ATTEMPTS_MOST - 1 && !holds)) break;
         if (how.time_budget > 0) how.time_budget = options->time_budget - (gproji_now(form->system) - begun);
         if (options->time_budget > 0 && !(how.time_budget > 0)) break;
-        /* 2. Back to the start, forces included, and again. */
-        beginning = gproji_choose_beginning(attempt - first, holds, &stiffer);
+        /* 2. Back to the start, forces included, and again. If the attempt before has ended on a spoiled mesh on which
+           all holds, there may be a whole one nearby or, in the end, one that is fairer; otherwise stiffer steps may
+           lead on. */
+        if (attempt == first)
+            beginning = gproji_beginnings[0];
+        else if (attempt == first + 1 && holds)
+            beginning = gproji_beginnings[GPROJI_NEARBY];
+        else
+            beginning = gproji_beginnings[attempt == first + GPROJI_ATTEMPTS_MOST - 1 ? GPROJI_FAIR : stiff++];
         beginning.fading = nearest;
         beginning.left_out = beginning.left_out && !nearest;
         if (here) memcpy(end, x, (size_t)count * sizeof *end);

@@ -1687,6 +1687,55 @@ GPROJT_TEST(equilibrium_within_the_tolerance_is_found) {
     }
 }
 
+/* Where forces of one sign carry weights, vertices that stood outside of all supports as seen from above cannot stay there:
+   the farthest is told, and how far. */
+GPROJT_TEST(overhangs_are_told) {
+    enum { COMPRESSION, TENSION, FREE_EDGE, WIND, ALL_AROUND, CASES };
+    int k;
+    for (k = 0; k < CASES; ++k) {
+        gproj_mesh *mesh = gprojt_hill(QUADS, 8, 8, k == TENSION ? -2 : 2);
+        double *load = gprojt_numbers(3 * mesh->vertex_count), unit = gproj_mesh_mean_edge_length(mesh), by = 0;
+        int32_t *edge = (int32_t *)calloc((size_t)mesh->edge_count, sizeof *edge), vertex = -1, i, count = 0;
+        double *before = gprojt_keep(mesh);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gprojt_list list = gprojt_boundary(mesh);
+        gproj_loads loads = gprojt_no_loads();
+        gproj_supports supports;
+        gproj_solve_options options;
+        gproj_result result;
+        const char *told;
+        for (i = 0; i < mesh->vertex_count; ++i) load[3 * i + 2] = -1;
+        for (i = 0; i < mesh->edge_count; ++i) edge[i] = i;
+        for (i = 0; i < list.count; ++i) /* a quarter of the plan, -4 <= x <= -2 */
+            if (k == ALL_AROUND || before[3 * list.item[i]] < -1.9) list.item[count++] = list.item[i];
+        list.count = count;
+        supports = gprojt_pins(list);
+        if (k == WIND) load[3 * mesh->origin[0]] = 0.01;
+        loads.point_load = load;
+        memset(&options, 0, sizeof options);
+        options.smooth = true;
+        gproj_add_equilibrium(form, &loads, &supports, 1);
+        gproj_add_fixed(form, list.count, list.item, 1);
+        if (k == TENSION)
+            gproj_add_tension(form, 0, NULL, 1);
+        else
+            gproj_add_compression(form, mesh->edge_count - (k == FREE_EDGE), edge, 1);
+        result = gproj_solve(form, 100, &options);
+        told = strstr(result.message, "alone keeps all vertices between the supports as seen from above, but vertex");
+        GPROJT_CHECK((told != NULL) == (k == COMPRESSION || k == TENSION));
+        if (told && sscanf(strstr(told, "vertex "), "vertex %d was %lf mean", &vertex, &by) == 2) {
+            GPROJT_NEAR(by, (before[3 * vertex] + 2) / unit, 0.01);
+            GPROJT_NEAR(before[3 * vertex], 4, 1e-12);
+            GPROJT_CHECK(strstr(result.message, k == TENSION ? "; tension alone" : "; compression alone") != NULL);
+            GPROJT_CHECK(strstr(result.message, k == TENSION ? "or allow compression" : "or allow tension") != NULL);
+        }
+        GPROJT_CHECK(!told || vertex >= 0);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        free(list.item), free(load), free(edge), free(before);
+    }
+}
+
 /* A plate that rises to carry has not been turned over: it would not have hung either. */
 GPROJT_TEST(rising_plates_are_not_overturned) {
     int sign;
@@ -2587,6 +2636,7 @@ int main(void) {
     GPROJT_RUN(overturned_shapes_are_told);
     GPROJT_RUN(overturned_shapes_are_told_by_their_forces);
     GPROJT_RUN(equilibrium_within_the_tolerance_is_found);
+    GPROJT_RUN(overhangs_are_told);
     GPROJT_RUN(rising_plates_are_not_overturned);
     GPROJT_RUN(loads_that_either_sign_leaves_are_told);
     GPROJT_RUN(planar_faces_and_compression);
