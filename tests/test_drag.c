@@ -1478,6 +1478,55 @@ GPROJT_TEST(failing_allocations) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_drag, &design) > 50);
 }
 
+/* A solve of the form's system during a drag leaves another matrix, so that a move that linearises needs memory. Without it the
+   move is undone: where only the factor's memory fails the drag goes on, else its end, too, puts the mesh back. */
+GPROJT_TEST(moves_without_memory) {
+    long fail;
+    int32_t undone = 0, ended = 0;
+    for (fail = 1;; ++fail) {
+        gproj_mesh *mesh = gprojt_roof(3, 0.02);
+        gprojt_failing failing = {0, 0, 0, 0, 0, 0};
+        gproj_host host = gprojt_failing_host(&failing);
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLAIN, &host);
+        int32_t v = gprojt_middle(mesh);
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        gproj_drag_options options;
+        double *before, *kept, p[3];
+        bool whole, ready;
+        gproj_drag *drag;
+        memset(&options, 0, sizeof options);
+        options.residual_bound = 1e-12;
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+        before = gprojt_keep(mesh);
+        drag = gproj_drag_begin(form, &handles, &options, NULL);
+        GPROJT_REQUIRE(drag);
+        memcpy(p, mesh->position + 3 * v, sizeof p);
+        p[0] += 0.1, p[2] += 0.2;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK && !gprojt_unmoved(mesh, before));
+        kept = gprojt_keep(mesh);
+        gproj_system_solve(gproj_form_system(form), 1, NULL);
+        failing.fail_at = failing.calls + fail;
+        p[2] += 0.2;
+        whole = gproj_drag_move(drag, p) == GPROJ_OK;
+        GPROJT_CHECK(whole == (failing.calls < failing.fail_at) && whole == !gprojt_unmoved(mesh, kept));
+        GPROJT_CHECK(gproj_drag_error(drag)->code == (whole ? GPROJ_OK : GPROJ_ERROR_MEMORY));
+        failing.fail_at = 0;
+        ready = gproj_form_error(form)->code == GPROJ_OK;
+        GPROJT_CHECK(ready || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
+        undone += !whole && ready, ended += !whole && !ready;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == (ready ? GPROJ_OK : GPROJ_ERROR_MEMORY));
+        GPROJT_CHECK(ready == !gprojt_unmoved(mesh, kept));
+        GPROJT_CHECK(gproj_drag_end(drag).outcome == (ready ? GPROJ_CONVERGED : GPROJ_FAILED));
+        GPROJT_CHECK(ready == !gprojt_unmoved(mesh, before));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        GPROJT_CHECK(failing.held == 0 && failing.bytes == 0 && failing.wrong_sizes == 0);
+        free(before), free(kept);
+        if (whole) break;
+    }
+    GPROJT_CHECK(undone > 0 && ended > 0);
+}
+
 /* The same bits on any number of threads. */
 GPROJT_TEST(same_bits_for_all_workers) {
     double *first = NULL;
@@ -1538,6 +1587,7 @@ int main(void) {
     GPROJT_RUN(handles_with_reach);
     GPROJT_RUN(handles_of_differences);
     GPROJT_RUN(failing_allocations);
+    GPROJT_RUN(moves_without_memory);
     GPROJT_RUN(same_bits_for_all_workers);
     return gprojt_report();
 }

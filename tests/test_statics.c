@@ -2427,6 +2427,36 @@ GPROJT_TEST(loads_of_any_size) {
     }
 }
 
+/* Loads of which one is beyond all numbers are not told: the first such vertex is named, and the loads are 0. */
+GPROJT_TEST(loads_beyond_all_numbers) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(QUADS, 3));
+    double *density = gprojt_numbers(mesh->edge_count), *told = gprojt_numbers(3 * mesh->vertex_count);
+    gproj_loads loads = gprojt_no_loads();
+    int32_t e = mesh->edge_count / 2, k, vertex, kind;
+    vertex = mesh->origin[2 * e] < mesh->origin[2 * e + 1] ? mesh->origin[2 * e] : mesh->origin[2 * e + 1];
+    for (k = 0; k < 3 * mesh->vertex_count; ++k) mesh->position[k] *= 1e10;
+    density[e] = 1e300;
+    loads.edge_density = density;
+    for (kind = 0; kind < 3; ++kind) { /* an edge, faces, snow: all vertices have a face */
+        gproj_form *form;
+        gproj_error error;
+        loads.edge_density = kind == 0 ? density : NULL;
+        loads.area_load = kind == 1 ? 1e300 : 0, loads.snow = kind == 2 ? 1e300 : 0;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) told[k] = 7;
+        GPROJT_CHECK(gproj_get_loads(form, told, &error) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == (kind == 0 ? vertex : 0));
+        GPROJT_CHECK(strstr(error.message, "beyond all numbers; use a larger unit of force"));
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) GPROJT_CHECK(told[k] == 0);
+        GPROJT_CHECK(gproj_get_loads(form, told, NULL) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+    free(density), free(told);
+}
+
 /* Loads too large for their mean are refused even if a slide takes them: nothing is told then. */
 GPROJT_TEST(loads_too_large_tell_nothing) {
     static const uint8_t slides[2] = {1, 0};
@@ -2500,6 +2530,7 @@ int main(void) {
     GPROJT_RUN(meshes_without_support);
     GPROJT_RUN(no_loads_have_not_vanished);
     GPROJT_RUN(loads_of_any_size);
+    GPROJT_RUN(loads_beyond_all_numbers);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
     GPROJT_RUN(loads_that_nothing_carries);
