@@ -18598,8 +18598,8 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
-    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
-    int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length;
+    int32_t q, quads = (int32_t)f->quad.count / 4;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
     for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
@@ -18610,13 +18610,11 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     before = gproji_distortion(u);
     slope = gproji_dot(u->gradient, u->step, n);
     memcpy(u->start, moving, n * sizeof *moving);
-    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) { /* Armijo's rule */
-        for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
-        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
+    for (length = 1;; length = length > 1e-12 ? 0.5 * length : 0) { /* Armijo's rule; 0: back to the start */
+        for (i = 0; i < n; ++i) moving[i] = length > 0 ? u->start[i] - length * u->step[i] : u->start[i];
+        if (gproji_distortion(u) <= before - 1e-4 * length * slope || length == 0)
+            return length > 0 && slope > part * before;
     }
-    memcpy(moving, u->start, n * sizeof *moving);
-    gproji_distortion(u); /* for `least` */
-    return false;
 }
 
 /* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
