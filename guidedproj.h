@@ -6976,7 +6976,7 @@ GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
     int32_t i, j, *row = NULL, pass;
     /* 1. Sums entries at the same place, if there are any: as terms of their own they would hide what they leave. The
        first pass counts. start[i] is the end of row i's last entry. */
-    for (pass = 0; pass < 2; ++pass) {
+    for (pass = 0;; ++pass) {
         for (j = 0, entries = 0; j < s->columns; ++j) {
             int64_t begin = entries;
             if (pass) first[j + 1] = first[j];
@@ -21807,8 +21807,8 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         bool whole = true;
         gproji_unbalanced(form, x, p.force, p.load, p.load);
         for (e = 0; e < form->mesh->edge_count; ++e) {
-            p.force[e] *= mean * form->scale;
-            if (densities) whole = gproji_check_density(e, p.force[e], error) == GPROJ_OK && whole;
+            if (p.force[e] != 0) p.force[e] *= mean * form->scale; /* which may be infinite */
+            if (densities && whole) whole = gproji_check_density(e, p.force[e], error) == GPROJ_OK;
         }
         for (v = 0; whole && residuals && v < form->mesh->vertex_count; ++v)
             residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) : 0;

@@ -369,6 +369,7 @@ GPROJT_TEST(changes_between_frames_are_saved) {
         }
         state = gprojt_save(under[1].form, &size);
         GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+        gprojt_check_same_form(under[1].form, state, size);
         free(state);
         gprojt_check_same_end(&under[0], &under[1]);
     }

@@ -1054,8 +1054,9 @@ GPROJT_TEST(forces_beyond_all_numbers) {
     for (v = 0; v < mesh->vertex_count; ++v) residuals[v] = -1;
     loads.density = 0, loads.point_load = load;
     form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; gprojt_inside_force(form, e) < 0;) ++e;
     GPROJT_CHECK(gproj_find_forces(form, w, residuals, &error) == GPROJ_ERROR_NUMBER);
-    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && w[0] == -1 && residuals[0] == -1);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && error.index == e && w[0] == -1 && residuals[0] == -1);
     GPROJT_CHECK(gproj_find_forces(form, NULL, residuals, NULL) == GPROJ_OK && residuals[0] >= 0);
     gproj_form_destroy(form);
     free(w), free(residuals), free(load);
@@ -1824,6 +1825,9 @@ GPROJT_TEST(supports_only) {
     GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, 0, 1, 1) >= 0);
     GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
     GPROJT_CHECK(gproj_find_forces(form, w, r, NULL) == GPROJ_OK && w[0] == 0 && r[0] == 0);
+    for (v = 0; v < mesh->edge_count; ++v) w[v] = 5; /* which no edge bears */
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gprojt_inside_load_scale(form) > 0);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && w[0] == 0);
     GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
     GPROJT_CHECK(gproj_get_reactions(form, r, NULL) == GPROJ_OK);
@@ -1961,18 +1965,18 @@ GPROJT_TEST(loads_that_nothing_carries) {
     gprojt_soup soup;
     gproj_mesh *mesh;
     double *point;
-    int32_t pins[5] = {0, 1, 2, 3, 4}, k;
+    int32_t pins[5] = {0, 1, 2, 3, 4}, k, axis;
     gproj_supports supports = {4, pins, NULL};
     memset(&soup, 0, sizeof soup);
     for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, k % 2, k / 2 % 2, 0); /* the last one is alone */
     gprojt_add_triangle(&soup, 0, 1, 2), gprojt_add_triangle(&soup, 2, 1, 3);
     mesh = gprojt_soup_mesh(&soup, NULL, NULL);
     point = gprojt_numbers(3 * mesh->vertex_count);
-    for (k = 0; k < 3; ++k) {
+    for (k = 0, axis = 2; axis >= 0; axis -= k == 2, k = (k + 1) % 3) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads = gprojt_no_loads();
         memset(point, 0, 15 * sizeof *point);
-        point[14] = k ? -1 : 0, loads.point_load = point, supports.count = k == 1 ? 4 : 5;
+        point[12 + axis] = k ? -1 : 0, loads.point_load = point, supports.count = k == 1 ? 4 : 5;
         if (k == 1)
             gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, 1) == -1, GPROJ_ERROR_ARGUMENT,
                                  GPROJ_PLACE_VERTEX, 4);
