@@ -1370,7 +1370,7 @@ GPROJT_TEST(angles_of_circles_are_named) {
     static const int32_t corner[1] = {7};
     static const double none[1] = {0};
     int k;
-    for (k = 0; k < 14; ++k) {
+    for (k = 0; k < 15; ++k) {
         gprojt_soup soup;
         gproj_mesh *mesh;
         gproj_form *form;
@@ -1381,7 +1381,8 @@ GPROJT_TEST(angles_of_circles_are_named) {
         memset(&soup, 0, sizeof soup);
         memset(&options, 0, sizeof options);
         gprojt_add_sheared(&soup, 7, k == 1 || k == 12 ? 8 : 7, k == 5 || k == 8, 0);
-        if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 6 || k == 8 || k == 14) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 0) gprojt_add_vertex(&soup, 3, 3, 9); /* alone, it has no angles */
         if (k == 12) { /* vertex 1 is a corner of the colour of vertex 0 */
             for (v = 0; v < soup.corner_count; ++v) {
                 int32_t *i = soup.corner + v;
@@ -1419,7 +1420,7 @@ GPROJT_TEST(angles_of_circles_are_named) {
         }
         if (k == 10) gproj_set_element_weights(form, planar, 1, corner, none);
         if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);
-        if (k == 4) gproj_set_element_weights(form, circular, 1, corner, none);
+        if (k == 4 || k == 14) gproj_set_element_weights(form, circular, 1, corner, none);
         options.smooth = true;
         result = gproj_solve(form, k < 9 ? 60 : 2, &options);
         GPROJT_CHECK((strstr(result.message, k < 13 ? name : less) != NULL) == named);
@@ -1431,6 +1432,30 @@ GPROJT_TEST(angles_of_circles_are_named) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* A vertex amid a side that sticks out by a third of an edge takes from one colour what its neighbours give to the other. */
+GPROJT_TEST(angles_beside_two_faces_are_named) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&soup, 0, sizeof soup);
+    memset(&options, 0, sizeof options);
+    gprojt_add_sheared(&soup, 6, 6, false, 0);
+    soup.position[3 * 3 + 1] -= 1.0 / 3; /* 4 atan(1 / 3) = 73.7 degrees */
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_circularity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    options.smooth = true;
+    result = gproj_solve(form, 30, &options);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
+    GPROJT_CHECK(strstr(result.message, "the sums differ by 74 degrees, most by vertex 3 (2 faces): let corners") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 /* A dome over a fixed square that is to hold more with the same area: more iterations do not help, and after enough of
@@ -3323,6 +3348,7 @@ int main(void) {
     GPROJT_RUN(advice_is_whole_or_not_there);
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
+    GPROJT_RUN(angles_beside_two_faces_are_named);
     GPROJT_RUN(conflicts_at_the_limit);
     GPROJT_RUN(planes_end_where_sides_are_let_go);
     GPROJT_RUN(planes_without_carriers_are_named);
