@@ -24454,15 +24454,21 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
         }
         gproji_follow_handles(drag, lost ? most : residual, lost ? 1 : 0);
     }
+    if (!gproji_form_ready(drag->form)) { /* a refresh has failed on the way */
+        gproji_pass_on(&drag->error, gproj_form_error(drag->form));
+        return gproji_undo_move(drag, info);
+    }
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
 }
 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
+    double residual;
     if (!drag) return 0;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag)) return HUGE_VAL;
-    return gproji_see_hard(drag->form->system, gproj_system_values(drag->form->system));
+    residual = gproji_see_hard(drag->form->system, gproj_system_values(drag->form->system));
+    return gproji_drag_is_usable(drag) ? residual : HUGE_VAL; /* a refresh may have failed */
 }
 
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {
