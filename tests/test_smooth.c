@@ -1517,6 +1517,8 @@ GPROJT_TEST(every_allocation_fails_once) {
     mesh = gprojt_twisted(2, 0.3);
     options.nearest = true; /* and then smooth */
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 3, &options) >= 30);
+    options.smooth = false; /* but long enough for corners to be mended on the way, which compiles again */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 54, &options) >= 30);
     gproj_mesh_destroy(mesh);
 }
 
