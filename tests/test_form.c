@@ -1434,6 +1434,30 @@ GPROJT_TEST(angles_of_circles_are_named) {
     }
 }
 
+/* A wish that no step serves, beside constraints that hold: what is told of them is nothing. */
+GPROJT_TEST(nothing_is_told_of_what_holds) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(2, 2));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *system = gproj_form_system(form);
+    gproj_solve_options options;
+    gproj_result result;
+    double *kept;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = 0;
+    kept = gprojt_keep(mesh);
+    memset(&options, 0, sizeof options);
+    options.nearest = true, options.epsilon = 1e-150;
+    gproj_add_planarity(form, 1);
+    gprojt_add_linear(system, gprojt_add_group(system, "faint", GPROJ_WISH, 1), 0, 1e-160, 1e300, 0);
+    result = gproj_solve(form, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.residual <= result.tolerance);
+    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance, and no step serves the wishes better"));
+    GPROJT_CHECK(gprojt_unmoved(mesh, kept));
+    free(kept);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A vertex amid a side that sticks out by a third of an edge takes from one colour what its neighbours give to the other. */
 GPROJT_TEST(angles_beside_two_faces_are_named) {
     gprojt_soup soup;
@@ -3349,6 +3373,7 @@ int main(void) {
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
     GPROJT_RUN(angles_beside_two_faces_are_named);
+    GPROJT_RUN(nothing_is_told_of_what_holds);
     GPROJT_RUN(conflicts_at_the_limit);
     GPROJT_RUN(planes_end_where_sides_are_let_go);
     GPROJT_RUN(planes_without_carriers_are_named);

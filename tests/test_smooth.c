@@ -1278,6 +1278,25 @@ GPROJT_TEST(smooth_and_nearest_is_nearest) {
     gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
 }
 
+/* Where faces need not be planar only edges are mended in the nearest mesh. */
+GPROJT_TEST(nearest_meshes_keep_edges) {
+    gproj_mesh *mesh = gprojt_twisted(4, 0.55);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    gproj_group_info info;
+    memset(&options, 0, sizeof options);
+    options.nearest = true;
+    gprojt_add_pressed(form, mesh);
+    gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1);
+    result = gproj_solve(form, 60, &options);
+    info = gprojt_group_named(form, "corners");
+    GPROJT_CHECK(result.outcome != GPROJ_FAILED && result.outcome != GPROJ_CONVERGED);
+    GPROJT_CHECK(info.rows > 0 && info.rows <= mesh->edge_count);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* The circular meshes nearest to these have lost edges. With smooth attempts everything holds on whole ones, also if
    wishes would stay, and no minimum is claimed. */
 GPROJT_TEST(smooth_attempts_follow_the_nearest) {
@@ -1650,6 +1669,7 @@ int main(void) {
     GPROJT_RUN(forged_corners_are_refused);
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(smooth_and_nearest_is_nearest);
+    GPROJT_RUN(nearest_meshes_keep_edges);
     GPROJT_RUN(smooth_attempts_follow_the_nearest);
     GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(loads_of_the_attempt_that_counts);
