@@ -1217,6 +1217,18 @@ GPROJT_TEST(forged_corners_are_refused) {
         gproj_form_destroy(form);
         free(forged);
     }
+    /* Bytes that are no number: wherever they stand behind the corners' list, the state is refused. */
+    gprojt_put_back(mesh, begin);
+    form = gprojt_amid(mesh, true);
+    for (at += 4 + 4 * (size_t)count; at + 8 + 24 < size; at += 16) {
+        uint8_t kept[24];
+        memcpy(kept, state + at, sizeof kept);
+        memset(state + at, 0xff, sizeof kept);
+        gprojt_seal(state, size);
+        GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_ERROR_SYNTAX);
+        memcpy(state + at, kept, sizeof kept);
+    }
+    gproj_form_destroy(form);
     free(state), free(begin);
     gproj_mesh_destroy(mesh);
 }
