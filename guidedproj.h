@@ -6977,7 +6977,7 @@ GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
     int32_t i, j, *row = NULL, pass;
     /* 1. Sums entries at the same place, if there are any: as terms of their own they would hide what they leave. The
        first pass counts. start[i] is the end of row i's last entry. */
-    for (pass = 0; pass < 2; ++pass) {
+    for (pass = 0;; ++pass) {
         for (j = 0, entries = 0; j < s->columns; ++j) {
             int64_t begin = entries;
             if (pass) first[j + 1] = first[j];
@@ -18615,8 +18615,8 @@ GPROJI_INTERNAL void gproji_add_quad(gproji_untangling *u, int32_t quad) {
 GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     gproji_filling *f = u->f;
     size_t n = 2 * (size_t)(f->vertices - f->boundary), i;
-    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length = 1;
-    int32_t q, quads = (int32_t)f->quad.count / 4, halvings;
+    double *moving = f->flat + 2 * (size_t)f->boundary, before, slope, length;
+    int32_t q, quads = (int32_t)f->quad.count / 4;
     gproj_factor_outcome outcome;
     memset(u->gradient, 0, n * sizeof *u->gradient);
     for (q = 0; q < quads; ++q) gproji_add_quad(u, q);
@@ -18627,13 +18627,11 @@ GPROJI_INTERNAL bool gproji_untangle_step(gproji_untangling *u, double part) {
     before = gproji_distortion(u);
     slope = gproji_dot(u->gradient, u->step, n);
     memcpy(u->start, moving, n * sizeof *moving);
-    for (halvings = 0; halvings < 40; ++halvings, length *= 0.5) { /* Armijo's rule */
-        for (i = 0; i < n; ++i) moving[i] = u->start[i] - length * u->step[i];
-        if (gproji_distortion(u) <= before - 1e-4 * length * slope) return slope > part * before;
+    for (length = 1;; length = length > 1e-12 ? 0.5 * length : 0) { /* Armijo's rule; 0: back to the start */
+        for (i = 0; i < n; ++i) moving[i] = length > 0 ? u->start[i] - length * u->step[i] : u->start[i];
+        if (gproji_distortion(u) <= before - 1e-4 * length * slope || length == 0)
+            return length > 0 && slope > part * before;
     }
-    memcpy(moving, u->start, n * sizeof *moving);
-    gproji_distortion(u); /* for `least` */
-    return false;
 }
 
 /* Places the inner vertices: harmonically within patches, then with the least distortion over all quads. */
@@ -21823,8 +21821,8 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
         bool whole = true;
         gproji_unbalanced(form, x, p.force, p.load, p.load);
         for (e = 0; e < form->mesh->edge_count; ++e) {
-            p.force[e] *= mean * form->scale;
-            if (densities) whole = gproji_check_density(e, p.force[e], error) == GPROJ_OK && whole;
+            if (p.force[e] != 0) p.force[e] *= mean * form->scale; /* which may be infinite */
+            if (densities && whole) whole = gproji_check_density(e, p.force[e], error) == GPROJ_OK;
         }
         for (v = 0; whole && residuals && v < form->mesh->vertex_count; ++v)
             residuals[v] = mean > 0 ? gproji_length3(p.load + 3 * (size_t)v) : 0;
@@ -24536,15 +24534,21 @@ GPROJ_API gproj_code gproj_drag_move(gproj_drag *drag, const double *positions) 
         }
         gproji_follow_handles(drag, lost ? most : residual, lost ? 1 : 0);
     }
+    if (!gproji_form_ready(drag->form)) { /* a refresh has failed on the way */
+        gproji_pass_on(&drag->error, gproj_form_error(drag->form));
+        return gproji_undo_move(drag, info);
+    }
     gproji_store_positions(drag->form, drag->form->before);
     return GPROJ_OK;
 }
 
 GPROJ_API double gproj_drag_residual(gproj_drag *drag) {
+    double residual;
     if (!drag) return 0;
     gproji_error_clear(&drag->error);
     if (!gproji_drag_is_usable(drag)) return HUGE_VAL;
-    return gproji_see_hard(drag->form->system, gproj_system_values(drag->form->system));
+    residual = gproji_see_hard(drag->form->system, gproj_system_values(drag->form->system));
+    return gproji_drag_is_usable(drag) ? residual : HUGE_VAL; /* a refresh may have failed */
 }
 
 GPROJ_API gproj_drag_info gproj_drag_get_info(const gproj_drag *drag) {

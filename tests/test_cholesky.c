@@ -464,6 +464,14 @@ GPROJT_TEST(cholesky_special_shapes) {
     given.permutation = rows;
     GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, &given) == GPROJ_ERROR_ARGUMENT);
     GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message, "entry 2 is 1, as an earlier one is") != NULL);
+    for (i = 0; i < 2; ++i) {
+        const int32_t none_such[3] = {2, i ? 3 : -1, 0};
+        given.permutation = none_such;
+        GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, &given) == GPROJ_ERROR_ARGUMENT);
+        GPROJT_CHECK(strstr(gproj_cholesky_error(c)->message,
+                            i ? "entry 1 is 3, which is no column" : "entry 1 is -1, which is no column") != NULL);
+        GPROJT_CHECK(gproj_cholesky_error(c)->place == GPROJ_PLACE_COLUMN && gproj_cholesky_error(c)->index == 1);
+    }
     /* empty columns: zero matrix */
     GPROJT_CHECK(gproj_cholesky_analyse(c, 3, empty, NULL, NULL) == GPROJ_OK);
     GPROJT_CHECK(gproj_cholesky_factor(c, NULL) == GPROJ_NOT_POSITIVE_DEFINITE);

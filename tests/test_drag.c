@@ -1122,6 +1122,58 @@ GPROJT_TEST(refreshes_that_fail_in_a_move) {
     gprojt_clear_stage(&stage);
 }
 
+/* Whichever of a move's refreshes it is that fails, also where the move has led too far and goes on from the mesh before the
+   drag: the move is undone, and in the end the mesh is as before. */
+typedef struct gprojt_fuse {
+    int32_t calls, fail_at; /* 0: never */
+} gprojt_fuse;
+
+static void gprojt_refresh_once_badly(void *user, gproj_system *system, int32_t group, const gproj_progress *progress) {
+    gprojt_fuse *fuse = (gprojt_fuse *)user;
+    (void)group, (void)progress;
+    if (++fuse->calls == fuse->fail_at) gproj_system_add_variables(system, 1, 1, NULL);
+}
+
+GPROJT_TEST(any_refresh_of_a_move_may_fail) {
+    int32_t fail, most = 1;
+    for (fail = 0; fail <= most; ++fail) {
+        gprojt_stage stage = gprojt_set_stage(gprojt_roof(4, 0.05), GPROJT_PLANAR, NULL);
+        gproj_system *system = gproj_form_system(stage.form);
+        int32_t v = gprojt_middle(stage.mesh);
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        gproj_drag_options options;
+        gprojt_fuse fuse = {0, 0};
+        gproj_group group;
+        gproj_drag *drag;
+        double *kept, p[3];
+        memset(&options, 0, sizeof options);
+        memset(&group, 0, sizeof group);
+        group.name = "mine", group.schedule = gproj_keep(1);
+        group.refresh = gprojt_refresh_once_badly, group.refresh_user = &fuse;
+        gprojt_add_linear(system, gproj_system_add_group(system, &group), 0, 0, 0, -1);
+        options.residual_bound = 1e-9;
+        drag = gproj_drag_begin(stage.form, &handles, &options, NULL);
+        GPROJT_REQUIRE(drag);
+        gprojt_pull(&stage, drag, v, 0.1 * stage.edge);
+        kept = gprojt_keep(stage.mesh);
+        memcpy(p, stage.start + 3 * v, sizeof p);
+        p[2] += 1000 * stage.edge;
+        fuse.calls = 0, fuse.fail_at = fail;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == (fail ? GPROJ_ERROR_STATE : GPROJ_OK));
+        GPROJT_CHECK(gproj_drag_error(drag)->code == (fail ? GPROJ_ERROR_STATE : GPROJ_OK));
+        GPROJT_CHECK(gprojt_unmoved(stage.mesh, kept) == (fail > 0));
+        if (!fail) { /* also one that is asked for */
+            most = fuse.calls, fuse.fail_at = most + 1;
+            GPROJT_CHECK(gproj_drag_residual(drag) == HUGE_VAL);
+            GPROJT_CHECK(gproj_drag_error(drag)->code == GPROJ_ERROR_STATE);
+        }
+        GPROJT_CHECK(gproj_drag_end(drag).outcome == GPROJ_FAILED && gprojt_unmoved(stage.mesh, stage.start));
+        free(kept);
+        gprojt_clear_stage(&stage);
+    }
+    GPROJT_CHECK(most > 2);
+}
+
 /* A row that is harmless below a height of the dragged vertex, and has a coefficient beyond all measure above it. */
 typedef struct gprojt_ceiling {
     int32_t coordinate;
@@ -1528,6 +1580,55 @@ GPROJT_TEST(failing_allocations) {
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_use_drag, &design) > 50);
 }
 
+/* A solve of the form's system during a drag leaves another matrix, so that a move that linearises needs memory. Without it the
+   move is undone: where only the factor's memory fails the drag goes on, else its end, too, puts the mesh back. */
+GPROJT_TEST(moves_without_memory) {
+    long fail;
+    int32_t undone = 0, ended = 0;
+    for (fail = 1;; ++fail) {
+        gproj_mesh *mesh = gprojt_roof(3, 0.02);
+        gprojt_failing failing = {0, 0, 0, 0, 0, 0};
+        gproj_host host = gprojt_failing_host(&failing);
+        gproj_form *form = gprojt_design(mesh, GPROJT_PLAIN, &host);
+        int32_t v = gprojt_middle(mesh);
+        gproj_handles handles = gprojt_vertex_handles(1, &v);
+        gproj_drag_options options;
+        double *before, *kept, p[3];
+        bool whole, ready;
+        gproj_drag *drag;
+        memset(&options, 0, sizeof options);
+        options.residual_bound = 1e-12;
+        GPROJT_CHECK(gproj_solve(form, 20, NULL).outcome == GPROJ_CONVERGED);
+        before = gprojt_keep(mesh);
+        drag = gproj_drag_begin(form, &handles, &options, NULL);
+        GPROJT_REQUIRE(drag);
+        memcpy(p, mesh->position + 3 * v, sizeof p);
+        p[0] += 0.1, p[2] += 0.2;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == GPROJ_OK && !gprojt_unmoved(mesh, before));
+        kept = gprojt_keep(mesh);
+        gproj_system_solve(gproj_form_system(form), 1, NULL);
+        failing.fail_at = failing.calls + fail;
+        p[2] += 0.2;
+        whole = gproj_drag_move(drag, p) == GPROJ_OK;
+        GPROJT_CHECK(whole == (failing.calls < failing.fail_at) && whole == !gprojt_unmoved(mesh, kept));
+        GPROJT_CHECK(gproj_drag_error(drag)->code == (whole ? GPROJ_OK : GPROJ_ERROR_MEMORY));
+        failing.fail_at = 0;
+        ready = gproj_form_error(form)->code == GPROJ_OK;
+        GPROJT_CHECK(ready || gproj_form_error(form)->code == GPROJ_ERROR_MEMORY);
+        undone += !whole && ready, ended += !whole && !ready;
+        GPROJT_CHECK(gproj_drag_move(drag, p) == (ready ? GPROJ_OK : GPROJ_ERROR_MEMORY));
+        GPROJT_CHECK(ready == !gprojt_unmoved(mesh, kept));
+        GPROJT_CHECK(gproj_drag_end(drag).outcome == (ready ? GPROJ_CONVERGED : GPROJ_FAILED));
+        GPROJT_CHECK(ready == !gprojt_unmoved(mesh, before));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+        GPROJT_CHECK(failing.held == 0 && failing.bytes == 0 && failing.wrong_sizes == 0);
+        free(before), free(kept);
+        if (whole) break;
+    }
+    GPROJT_CHECK(undone > 0 && ended > 0);
+}
+
 /* The same bits on any number of threads. */
 GPROJT_TEST(same_bits_for_all_workers) {
     double *first = NULL;
@@ -1578,6 +1679,7 @@ int main(void) {
     GPROJT_RUN(refused_in_a_solve);
     GPROJT_RUN(unknowns_without_start);
     GPROJT_RUN(refreshes_that_fail_in_a_move);
+    GPROJT_RUN(any_refresh_of_a_move_may_fail);
     GPROJT_RUN(moves_that_are_undone);
     GPROJT_RUN(misused);
     GPROJT_RUN(releases_that_need_longer);
@@ -1590,6 +1692,7 @@ int main(void) {
     GPROJT_RUN(handles_with_reach);
     GPROJT_RUN(handles_of_differences);
     GPROJT_RUN(failing_allocations);
+    GPROJT_RUN(moves_without_memory);
     GPROJT_RUN(same_bits_for_all_workers);
     return gprojt_report();
 }

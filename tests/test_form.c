@@ -1370,7 +1370,7 @@ GPROJT_TEST(angles_of_circles_are_named) {
     static const int32_t corner[1] = {7};
     static const double none[1] = {0};
     int k;
-    for (k = 0; k < 14; ++k) {
+    for (k = 0; k < 15; ++k) {
         gprojt_soup soup;
         gproj_mesh *mesh;
         gproj_form *form;
@@ -1381,7 +1381,8 @@ GPROJT_TEST(angles_of_circles_are_named) {
         memset(&soup, 0, sizeof soup);
         memset(&options, 0, sizeof options);
         gprojt_add_sheared(&soup, 7, k == 1 || k == 12 ? 8 : 7, k == 5 || k == 8, 0);
-        if (k == 6 || k == 8) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 6 || k == 8 || k == 14) gprojt_add_sheared(&soup, 7, 7, false, 20);
+        if (k == 0) gprojt_add_vertex(&soup, 3, 3, 9); /* alone, it has no angles */
         if (k == 12) { /* vertex 1 is a corner of the colour of vertex 0 */
             for (v = 0; v < soup.corner_count; ++v) {
                 int32_t *i = soup.corner + v;
@@ -1419,7 +1420,7 @@ GPROJT_TEST(angles_of_circles_are_named) {
         }
         if (k == 10) gproj_set_element_weights(form, planar, 1, corner, none);
         if (k == 2) gproj_set_element_weights(form, held, 1, corner, none);
-        if (k == 4) gproj_set_element_weights(form, circular, 1, corner, none);
+        if (k == 4 || k == 14) gproj_set_element_weights(form, circular, 1, corner, none);
         options.smooth = true;
         result = gproj_solve(form, k < 9 ? 60 : 2, &options);
         GPROJT_CHECK((strstr(result.message, k < 13 ? name : less) != NULL) == named);
@@ -1431,6 +1432,54 @@ GPROJT_TEST(angles_of_circles_are_named) {
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }
+}
+
+/* A wish that no step serves, beside constraints that hold: what is told of them is nothing. */
+GPROJT_TEST(nothing_is_told_of_what_holds) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(2, 2));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_system *system = gproj_form_system(form);
+    gproj_solve_options options;
+    gproj_result result;
+    double *kept;
+    int32_t v;
+    for (v = 0; v < mesh->vertex_count; ++v) mesh->position[3 * v + 2] = 0;
+    kept = gprojt_keep(mesh);
+    memset(&options, 0, sizeof options);
+    options.nearest = true, options.epsilon = 1e-150;
+    gproj_add_planarity(form, 1);
+    gprojt_add_linear(system, gprojt_add_group(system, "faint", GPROJ_WISH, 1), 0, 1e-160, 1e300, 0);
+    result = gproj_solve(form, 9, &options);
+    GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.residual <= result.tolerance);
+    GPROJT_CHECK(strstr(result.message, "all constraints hold to the tolerance, and no step serves the wishes better"));
+    GPROJT_CHECK(gprojt_unmoved(mesh, kept));
+    free(kept);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A vertex amid a side that sticks out by a third of an edge takes from one colour what its neighbours give to the other. */
+GPROJT_TEST(angles_beside_two_faces_are_named) {
+    gprojt_soup soup;
+    gproj_mesh *mesh;
+    gproj_form *form;
+    gproj_solve_options options;
+    gproj_result result;
+    memset(&soup, 0, sizeof soup);
+    memset(&options, 0, sizeof options);
+    gprojt_add_sheared(&soup, 6, 6, false, 0);
+    soup.position[3 * 3 + 1] -= 1.0 / 3; /* 4 atan(1 / 3) = 73.7 degrees */
+    mesh = gprojt_mesh_of(soup);
+    form = gproj_form_create(mesh, NULL);
+    gproj_add_planarity(form, 1);
+    gproj_add_circularity(form, 1);
+    gproj_add_fixed_boundary(form, 1);
+    options.smooth = true;
+    result = gproj_solve(form, 30, &options);
+    GPROJT_CHECK(result.outcome != GPROJ_CONVERGED || result.spoiled.total > 0);
+    GPROJT_CHECK(strstr(result.message, "the sums differ by 74 degrees, most by vertex 3 (2 faces): let corners") != NULL);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 /* A dome over a fixed square that is to hold more with the same area: more iterations do not help, and after enough of
@@ -3340,6 +3389,8 @@ int main(void) {
     GPROJT_RUN(advice_is_whole_or_not_there);
     GPROJT_RUN(planes_that_meet_one_vertex);
     GPROJT_RUN(angles_of_circles_are_named);
+    GPROJT_RUN(angles_beside_two_faces_are_named);
+    GPROJT_RUN(nothing_is_told_of_what_holds);
     GPROJT_RUN(conflicts_at_the_limit);
     GPROJT_RUN(planes_end_where_sides_are_let_go);
     GPROJT_RUN(planes_without_carriers_are_named);

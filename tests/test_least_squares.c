@@ -667,6 +667,29 @@ GPROJT_TEST(entries_that_repeat) {
     squares_free(&s);
 }
 
+/* Sums of so many products are rounded by more than the proximity in the matrix: where two columns are multiples of each other
+   it may have no factor, and gets a larger one. */
+GPROJT_TEST(singular_by_rounding) {
+    enum {
+        ROWS = 81000
+    };
+    squares s = squares_of(ROWS, 2, 2 * ROWS);
+    double factor;
+    int32_t i, again = 0;
+    s.start[1] = ROWS, s.start[2] = 2 * ROWS;
+    for (i = 0; i < ROWS; ++i) s.row[i] = s.row[ROWS + i] = i, s.value[i] = 0.1, s.b[i] = 1;
+    for (factor = 1.3; factor < 100; factor *= 1.2) {
+        gproj_least_squares_result r;
+        for (i = 0; i < ROWS; ++i) s.value[ROWS + i] = 0.1 * factor;
+        s.x[0] = s.x[1] = 0;
+        r = solve(&s);
+        GPROJT_CHECK(r.outcome == GPROJ_LEAST_SQUARES_SOLVED && r.residual <= 1e-9 && r.kkt <= 1e-12);
+        again += r.factorisations > 1;
+    }
+    GPROJT_CHECK(again > 0);
+    squares_free(&s);
+}
+
 /* x - y = 3 from far along x = y, where the terms' rounding hides the 3: not called solved there, and solved nearby. */
 GPROJT_TEST(far_starts) {
     static const double starts[] = {1e12, 1e15, 1e20, 1e50};
@@ -1108,6 +1131,14 @@ GPROJT_TEST(failing_allocations) {
     for (i = 0; i < s.p.rows; ++i) s.b[i] *= 1.0001;
     GPROJT_CHECK(gprojt_fail_every_allocation(solve_from_near, &s) >= 10);
     squares_free(&s);
+    s = squares_of(2, 2, 4); /* two entries at the same place: they are summed in arrays of their own */
+    s.row[2] = s.row[3] = 1, s.value[0] = s.value[1] = s.value[2] = s.value[3] = 1;
+    s.start[1] = 3, s.start[2] = 4;
+    s.b[0] = 4, s.b[1] = 7;
+    GPROJT_CHECK(gprojt_fail_every_allocation(solve_with, &s) >= 10);
+    GPROJT_NEAR(s.x[0], 2, 1e-10);
+    GPROJT_NEAR(s.x[1], 5, 1e-10);
+    squares_free(&s);
 }
 
 int main(void) {
@@ -1129,6 +1160,7 @@ int main(void) {
     GPROJT_RUN(fixed_variables_leave_no_doubt);
     GPROJT_RUN(entries_that_cancel);
     GPROJT_RUN(entries_that_repeat);
+    GPROJT_RUN(singular_by_rounding);
     GPROJT_RUN(far_starts);
     GPROJT_RUN(products_that_underflow);
     GPROJT_RUN(tiny_numbers);

@@ -566,6 +566,40 @@ GPROJT_TEST(undamped_steps_to_rows_that_overflow) {
     gproj_system_destroy(s);
 }
 
+/* x = 1, by a refresh whose row beyond `edge` has numbers, but no square of one. */
+static void gprojt_edge_refresh(void *user, gproj_system *s, int32_t group, const gproj_progress *progress) {
+    double coefficient = gproj_system_values(s)[0] > *(const double *)user ? 1e200 : 1;
+    (void)progress;
+    gproj_system_set_row(s, group, 0, &coefficient, -1);
+}
+
+/* A step to where the merit is beyond all numbers is taken back, and tried again with a larger eps: x comes up to that
+   place and no further. */
+GPROJT_TEST(steps_beyond_all_numbers_are_taken_back) {
+    static const double x[1] = {0};
+    int undamped;
+    for (undamped = 0; undamped < 2; ++undamped) {
+        gproj_system *s = gprojt_system(NULL, 1, 1, x);
+        gproj_group group;
+        gproj_solve_options options;
+        gproj_result result;
+        double edge = 0.6, end;
+        memset(&group, 0, sizeof group);
+        memset(&options, 0, sizeof options);
+        options.skip_damping = undamped != 0;
+        group.name = "edge", group.schedule = gproj_keep(1), group.refresh = gprojt_edge_refresh;
+        group.refresh_user = &edge;
+        gproj_system_add_group(s, &group);
+        gprojt_add_linear(s, 0, 0, 1, -1, 0);
+        result = gproj_system_solve(s, 40, &options);
+        end = gproj_system_values(s)[0];
+        GPROJT_CHECK(result.outcome == GPROJ_STALLED && result.damped > 0 && gproj_system_error(s)->code == GPROJ_OK);
+        GPROJT_CHECK(end > 0 && end <= edge);
+        GPROJT_NEAR(result.residual, 1 - end, 1e-12);
+        gproj_system_destroy(s);
+    }
+}
+
 /* An undamped solve whose residual falls slowly, by 2 % a step, loses patience; but not where the last of these steps is the one
    that reaches the tolerance. */
 GPROJT_TEST(patience_ends_where_constraints_hold) {
@@ -1789,6 +1823,7 @@ int main(void) {
     GPROJT_RUN(steps_that_overflow);
     GPROJT_RUN(undamped_steps_that_overflow);
     GPROJT_RUN(undamped_steps_to_rows_that_overflow);
+    GPROJT_RUN(steps_beyond_all_numbers_are_taken_back);
     GPROJT_RUN(patience_ends_where_constraints_hold);
     GPROJT_RUN(no_verdict_before_schedules_end);
     GPROJT_RUN(wishes_that_no_step_serves);

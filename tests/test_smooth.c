@@ -1217,6 +1217,18 @@ GPROJT_TEST(forged_corners_are_refused) {
         gproj_form_destroy(form);
         free(forged);
     }
+    /* Bytes that are no number: wherever they stand behind the corners' list, the state is refused. */
+    gprojt_put_back(mesh, begin);
+    form = gprojt_amid(mesh, true);
+    for (at += 4 + 4 * (size_t)count; at + 8 + 24 < size; at += 16) {
+        uint8_t kept[24];
+        memcpy(kept, state + at, sizeof kept);
+        memset(state + at, 0xff, sizeof kept);
+        gprojt_seal(state, size);
+        GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_ERROR_SYNTAX);
+        memcpy(state + at, kept, sizeof kept);
+    }
+    gproj_form_destroy(form);
     free(state), free(begin);
     gproj_mesh_destroy(mesh);
 }
@@ -1276,6 +1288,25 @@ GPROJT_TEST(smooth_and_nearest_is_nearest) {
     }
     GPROJT_CHECK(gprojt_unmoved(mesh[0], mesh[1]->position));
     gproj_mesh_destroy(mesh[0]), gproj_mesh_destroy(mesh[1]);
+}
+
+/* Where faces need not be planar only edges are mended in the nearest mesh. */
+GPROJT_TEST(nearest_meshes_keep_edges) {
+    gproj_mesh *mesh = gprojt_twisted(4, 0.55);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    gproj_result result;
+    gproj_group_info info;
+    memset(&options, 0, sizeof options);
+    options.nearest = true;
+    gprojt_add_pressed(form, mesh);
+    gproj_add_equal_lengths(form, mesh->edge_count, NULL, 1);
+    result = gproj_solve(form, 60, &options);
+    info = gprojt_group_named(form, "corners");
+    GPROJT_CHECK(result.outcome != GPROJ_FAILED && result.outcome != GPROJ_CONVERGED);
+    GPROJT_CHECK(info.rows > 0 && info.rows <= mesh->edge_count);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
 }
 
 /* The circular meshes nearest to these have lost edges. With smooth attempts everything holds on whole ones, also if
@@ -1517,6 +1548,8 @@ GPROJT_TEST(every_allocation_fails_once) {
     mesh = gprojt_twisted(2, 0.3);
     options.nearest = true; /* and then smooth */
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 3, &options) >= 30);
+    options.smooth = false; /* but long enough for corners to be mended on the way, which compiles again */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 54, &options) >= 30);
     gproj_mesh_destroy(mesh);
 }
 
@@ -1695,6 +1728,7 @@ int main(void) {
     GPROJT_RUN(forged_corners_are_refused);
     GPROJT_RUN(creeping_is_saved);
     GPROJT_RUN(smooth_and_nearest_is_nearest);
+    GPROJT_RUN(nearest_meshes_keep_edges);
     GPROJT_RUN(smooth_attempts_follow_the_nearest);
     GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(loads_of_the_attempt_that_counts);

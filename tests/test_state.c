@@ -369,6 +369,7 @@ GPROJT_TEST(changes_between_frames_are_saved) {
         }
         state = gprojt_save(under[1].form, &size);
         GPROJT_CHECK(gproj_state_restore(under[1].form, state, size, NULL) == GPROJ_OK);
+        gprojt_check_same_form(under[1].form, state, size);
         free(state);
         gprojt_check_same_end(&under[0], &under[1]);
     }
@@ -1334,6 +1335,33 @@ GPROJT_TEST(what_cannot_be_saved) {
     gproj_mesh_destroy(mesh);
 }
 
+/* An unknown that is no number belongs to no vertex: nothing is saved until it is a number again. */
+GPROJT_TEST(unknowns_that_cannot_be_saved) {
+    static const double bad[3] = {NAN, HUGE_VAL, -HUGE_VAL};
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    double *x = gproj_system_values(gproj_form_system(form)) + gprojt_inside_normal(form, 2), before = *x;
+    size_t size, k;
+    uint8_t *state = gprojt_save(form, &size), *again = gprojt_save(form, &size);
+    int i;
+    for (i = 0; i < 3; ++i) {
+        gproj_error error;
+        *x = bad[i];
+        GPROJT_CHECK(gproj_state_size(form) == size);
+        GPROJT_CHECK(gproj_state_save(form, state, size, &error) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(error.place == GPROJ_PLACE_NONE && error.index == -1);
+        GPROJT_CHECK(strstr(error.message, "state: it cannot be saved: a number is none"));
+        for (k = 0; k < size; ++k) GPROJT_CHECK(state[k] == 0);
+        GPROJT_CHECK(gproj_state_save(form, state, size, NULL) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        *x = before;
+        GPROJT_CHECK(gproj_state_save(form, state, size, &error) == GPROJ_OK && memcmp(state, again, size) == 0);
+    }
+    free(state), free(again);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* -- failing allocations: of a state that brings the library's own groups into a fresh form -- */
 
 typedef struct gprojt_saved {
@@ -1408,6 +1436,7 @@ int main(void) {
     GPROJT_RUN(states_of_other_groups);
     GPROJT_RUN(restored_without_an_analysis);
     GPROJT_RUN(what_cannot_be_saved);
+    GPROJT_RUN(unknowns_that_cannot_be_saved);
     GPROJT_RUN(failing_allocations);
     return gprojt_report();
 }

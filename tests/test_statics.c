@@ -1054,8 +1054,9 @@ GPROJT_TEST(forces_beyond_all_numbers) {
     for (v = 0; v < mesh->vertex_count; ++v) residuals[v] = -1;
     loads.density = 0, loads.point_load = load;
     form = gprojt_pinned_form(mesh, NULL, &loads);
+    for (e = 0; gprojt_inside_force(form, e) < 0;) ++e;
     GPROJT_CHECK(gproj_find_forces(form, w, residuals, &error) == GPROJ_ERROR_NUMBER);
-    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && w[0] == -1 && residuals[0] == -1);
+    GPROJT_CHECK(error.place == GPROJ_PLACE_EDGE && error.index == e && w[0] == -1 && residuals[0] == -1);
     GPROJT_CHECK(gproj_find_forces(form, NULL, residuals, NULL) == GPROJ_OK && residuals[0] >= 0);
     gproj_form_destroy(form);
     free(w), free(residuals), free(load);
@@ -1946,6 +1947,9 @@ GPROJT_TEST(supports_only) {
     GPROJT_CHECK(gproj_add_stress_bounds(form, mesh->edge_count, NULL, NULL, 0, 1, 1) >= 0);
     GPROJT_CHECK(gproj_add_force_fairness(form, 1) >= 0);
     GPROJT_CHECK(gproj_find_forces(form, w, r, NULL) == GPROJ_OK && w[0] == 0 && r[0] == 0);
+    for (v = 0; v < mesh->edge_count; ++v) w[v] = 5; /* which no edge bears */
+    GPROJT_CHECK(gproj_set_forces(form, w, NULL) == GPROJ_OK && gprojt_inside_load_scale(form) > 0);
+    GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && w[0] == 0);
     GPROJT_CHECK(gproj_solve(form, 9, NULL).outcome == GPROJ_CONVERGED);
     GPROJT_CHECK(gprojt_largest_move(kept, mesh->position, mesh->vertex_count) < 1e-12);
     GPROJT_CHECK(gproj_get_reactions(form, r, NULL) == GPROJ_OK);
@@ -2083,18 +2087,18 @@ GPROJT_TEST(loads_that_nothing_carries) {
     gprojt_soup soup;
     gproj_mesh *mesh;
     double *point;
-    int32_t pins[5] = {0, 1, 2, 3, 4}, k;
+    int32_t pins[5] = {0, 1, 2, 3, 4}, k, axis;
     gproj_supports supports = {4, pins, NULL};
     memset(&soup, 0, sizeof soup);
     for (k = 0; k < 5; ++k) gprojt_add_vertex(&soup, k % 2, k / 2 % 2, 0); /* the last one is alone */
     gprojt_add_triangle(&soup, 0, 1, 2), gprojt_add_triangle(&soup, 2, 1, 3);
     mesh = gprojt_soup_mesh(&soup, NULL, NULL);
     point = gprojt_numbers(3 * mesh->vertex_count);
-    for (k = 0; k < 3; ++k) {
+    for (k = 0, axis = 2; axis >= 0; axis -= k == 2, k = (k + 1) % 3) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_loads loads = gprojt_no_loads();
         memset(point, 0, 15 * sizeof *point);
-        point[14] = k ? -1 : 0, loads.point_load = point, supports.count = k == 1 ? 4 : 5;
+        point[12 + axis] = k ? -1 : 0, loads.point_load = point, supports.count = k == 1 ? 4 : 5;
         if (k == 1)
             gprojt_check_refused(form, gproj_add_equilibrium(form, &loads, &supports, 1) == -1, GPROJ_ERROR_ARGUMENT,
                                  GPROJ_PLACE_VERTEX, 4);
@@ -2575,6 +2579,36 @@ GPROJT_TEST(loads_of_any_size) {
     }
 }
 
+/* Loads of which one is beyond all numbers are not told: the first such vertex is named, and the loads are 0. */
+GPROJT_TEST(loads_beyond_all_numbers) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(QUADS, 3));
+    double *density = gprojt_numbers(mesh->edge_count), *told = gprojt_numbers(3 * mesh->vertex_count);
+    gproj_loads loads = gprojt_no_loads();
+    int32_t e = mesh->edge_count / 2, k, vertex, kind;
+    vertex = mesh->origin[2 * e] < mesh->origin[2 * e + 1] ? mesh->origin[2 * e] : mesh->origin[2 * e + 1];
+    for (k = 0; k < 3 * mesh->vertex_count; ++k) mesh->position[k] *= 1e10;
+    density[e] = 1e300;
+    loads.edge_density = density;
+    for (kind = 0; kind < 3; ++kind) { /* an edge, faces, snow: all vertices have a face */
+        gproj_form *form;
+        gproj_error error;
+        loads.edge_density = kind == 0 ? density : NULL;
+        loads.area_load = kind == 1 ? 1e300 : 0, loads.snow = kind == 2 ? 1e300 : 0;
+        form = gprojt_pinned_form(mesh, NULL, &loads);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) told[k] = 7;
+        GPROJT_CHECK(gproj_get_loads(form, told, &error) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(error.place == GPROJ_PLACE_VERTEX && error.index == (kind == 0 ? vertex : 0));
+        GPROJT_CHECK(strstr(error.message, "beyond all numbers; use a larger unit of force"));
+        for (k = 0; k < 3 * mesh->vertex_count; ++k) GPROJT_CHECK(told[k] == 0);
+        GPROJT_CHECK(gproj_get_loads(form, told, NULL) == GPROJ_ERROR_NUMBER);
+        GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_OK);
+        gproj_form_destroy(form);
+    }
+    gproj_mesh_destroy(mesh);
+    free(density), free(told);
+}
+
 /* Loads too large for their mean are refused even if a slide takes them: nothing is told then. */
 GPROJT_TEST(loads_too_large_tell_nothing) {
     static const uint8_t slides[2] = {1, 0};
@@ -2651,6 +2685,7 @@ int main(void) {
     GPROJT_RUN(meshes_without_support);
     GPROJT_RUN(no_loads_have_not_vanished);
     GPROJT_RUN(loads_of_any_size);
+    GPROJT_RUN(loads_beyond_all_numbers);
     GPROJT_RUN(loads_too_large_tell_nothing);
     GPROJT_RUN(refusals_of_equilibrium);
     GPROJT_RUN(loads_that_nothing_carries);

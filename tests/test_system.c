@@ -151,6 +151,12 @@ GPROJT_TEST(gradients_by_finite_differences) {
     }
     GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-8);
     GPROJT_CHECK(refreshes == 1);
+    gproj_system_set_schedule(s, 0, gproj_keep(0)); /* without weight nothing is refreshed, but the rows are checked */
+    GPROJT_CHECK(gproj_system_check_gradients(s) < 1e-8 && refreshes == 1);
+    for (r = -1; r < 3; r += 3) {
+        gproj_group_info info = gproj_system_group_info(s, r); /* there is no such group */
+        GPROJT_CHECK(info.rows == 0 && info.worst_row == -1 && info.worst_element == -1 && info.name[0] == 0);
+    }
     gproj_system_destroy(s);
     s = gproj_system_create(NULL);
     GPROJT_CHECK(gproj_system_check_gradients(s) == 0); /* nothing is right */

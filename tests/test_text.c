@@ -384,6 +384,8 @@ GPROJT_TEST(files) {
         GPROJT_CHECK(!gproj_mesh_load(path, NULL, &error) &&
                      strstr(error.message, "'...\xc3\xa4\xc3\xa4") == error.message);
     }
+    memset(path, '\x80', sizeof path - 1), path[sizeof path - 1] = 0; /* no character begins anywhere */
+    GPROJT_CHECK(!gproj_mesh_load(path + sizeof path - 400, NULL, &error) && strchr(error.message, '\x80') == NULL);
     memset(path, 'x', sizeof path);
     memcpy(path + sizeof path - 8, "\xc3\xa4.obj", 7);
     for (i = 0; i < 2; ++i) { /* a long path; cut to its end, at a whole character */
