@@ -667,6 +667,9 @@ GPROJT_TEST(awkward_curves) {
         {12, 6, {0, 3, 6, 7, 8, 10}, true, {1.67,  0.12,  0.28,  0.30,  0.22,  1.95,  -0.04, 0.47,
                                             -1.11, 1.05,  -0.75, 0.13,  -0.89, -0.12, -1.01, -1.26,
                                             -0.24, -0.64, 0.42,  -1.11, 0.32,  -0.29, 1.93,  -0.79}},
+        /* the cheapest way between two corners crosses a tip whose sides are longer than it */
+        {10, 8, {1, 2, 3, 4, 5, 6, 7, 8}, true, {5,   0,  12,  9,  0,  4,   -8, 17,  -3, 1,
+                                                 -17, -5, -14, -9, -8, -17, 1,  -11, 12, -14}},
     };
     int32_t i;
     for (i = 0; i < (int32_t)(sizeof curve / sizeof *curve); ++i) {
