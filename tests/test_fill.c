@@ -454,17 +454,22 @@ GPROJT_TEST(strips_over_flat_corners_may_be_all) {
     }
 }
 
-/* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. */
+/* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. With
+   rings there is no strip, and opposite sides have equal numbers. */
 GPROJT_TEST(numbers_allow_for_strips) {
-    gprojt_curve c = gprojt_half_disc();
-    gproj_fill_info info;
-    gproj_mesh *mesh;
-    c.corner[1] = 20, c.corner[2] = 70, c.given = false, c.options.edge_length = 0.2;
-    mesh = gprojt_fill(&c, &info, NULL);
-    GPROJT_REQUIRE(mesh != NULL);
-    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
-    GPROJT_CHECK(info.irregular_count == 2);
-    gproj_mesh_destroy(mesh);
+    int32_t rings;
+    for (rings = 0; rings < 2; ++rings) {
+        gprojt_curve c = gprojt_half_disc();
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.corner[1] = 20, c.corner[2] = 70, c.given = false;
+        c.options.edge_length = 0.2, c.options.rings = rings;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, rings ? 5 : 4));
+        GPROJT_CHECK(info.irregular_count == (rings ? 4 : 2));
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 GPROJT_TEST(points_of_the_curve_are_kept) {

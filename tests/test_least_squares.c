@@ -1100,6 +1100,7 @@ GPROJT_TEST(memory_of_the_host) {
 }
 
 GPROJT_TEST(failing_allocations) {
+    static const double repeating[6] = {0.5, 2, 0.5, 1, 1, -1};
     squares s = roof(SADDLE, 6, true, 0.2, 17);
     int32_t i;
     GPROJT_CHECK(gprojt_fail_every_allocation(solve_with, &s) >= 10);
@@ -1107,6 +1108,14 @@ GPROJT_TEST(failing_allocations) {
     memcpy(s.upper, s.x, (size_t)s.p.columns * sizeof(double));
     for (i = 0; i < s.p.rows; ++i) s.b[i] *= 1.0001;
     GPROJT_CHECK(gprojt_fail_every_allocation(solve_from_near, &s) >= 10);
+    squares_free(&s);
+    s = squares_of(2, 2, 6); /* entries that repeat: x + y = 1, 3 x - y = 1 */
+    for (i = 0; i < 6; ++i) s.row[i] = i % 2, s.value[i] = repeating[i];
+    s.start[1] = 4, s.start[2] = 6;
+    s.b[0] = s.b[1] = 1;
+    GPROJT_CHECK(gprojt_fail_every_allocation(solve_with, &s) >= 10);
+    GPROJT_NEAR(s.x[0], 0.5, 1e-9);
+    GPROJT_NEAR(s.x[1], 0.5, 1e-9);
     squares_free(&s);
 }
 
