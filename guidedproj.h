@@ -2128,7 +2128,6 @@ GPROJI_INTERNAL uint32_t gproji_big_divide(gproji_big *r, const gproji_big *s) {
             if (carry) borrow = 0;
         }
     }
-    r->count = n;
     while (r->count && !r->limb[r->count - 1]) --r->count;
     return (uint32_t)q;
 }
@@ -6996,7 +6995,7 @@ GPROJI_INTERNAL void gproji_squares_assemble(gproji_squares *s) {
         first = (int64_t *)gproji_pool_take_zeroed(&s->pool, (int64_t)s->columns + 1, sizeof *first);
         row = gproji_take_ints(&s->pool, entries);
         value = (double *)gproji_pool_take(&s->pool, entries, sizeof *value);
-        if (!first || !row || !value) {
+        if (s->pool.failed) {
             s->code = gproji_fail_memory(s->error);
             return;
         }

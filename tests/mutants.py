@@ -396,8 +396,8 @@ def open_of(tokens, at):
 
 
 def compiled_lines():
-    """The header's lines that this machine's compiler sees, behind #if."""
-    run = subprocess.run(["cc", "-std=c11", "-E", "-I", ROOT, "-x", "c", "-"], capture_output=True, text=True, cwd=ROOT,
+    """The header's lines that this machine's compiler sees in the tests, behind #if."""
+    run = subprocess.run(["cc", "-std=c11", "-pthread", "-E", "-I", ROOT, "-x", "c", "-"], capture_output=True, text=True,
                          input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n')
     lines, inside, at = set(), False, 0
     for text in run.stdout.split("\n"):
@@ -511,7 +511,8 @@ def drop_those_that_do_not_compile(source, mutants):
         write_header(source, mutants)
         bad = set()
         for files in ("0", "1"):
-            run = subprocess.run(["cc", "-std=c11", "-fsyntax-only", "-I", TREE, "-DGPROJI_FILES=" + files, "-x", "c", "-"],
+            run = subprocess.run(["cc", "-std=c11", "-pthread", "-fsyntax-only", "-I", TREE, "-DGPROJI_FILES=" + files,
+                                  "-x", "c", "-"],
                                  input='#define GUIDEDPROJ_IMPLEMENTATION\n#include "guidedproj.h"\n', capture_output=True,
                                  text=True, cwd=TREE)
             bad |= {int(n) for n in re.findall(r"guidedproj\.h:(\d+):\d+: (?:warning|error)", run.stderr)}

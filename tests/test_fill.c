@@ -454,17 +454,22 @@ GPROJT_TEST(strips_over_flat_corners_may_be_all) {
     }
 }
 
-/* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. */
+/* Numbers that are chosen leave a grid inside the strip over them: the diameter has two more than the arc opposite. With
+   rings there is no strip, and opposite sides have equal numbers. */
 GPROJT_TEST(numbers_allow_for_strips) {
-    gprojt_curve c = gprojt_half_disc();
-    gproj_fill_info info;
-    gproj_mesh *mesh;
-    c.corner[1] = 20, c.corner[2] = 70, c.given = false, c.options.edge_length = 0.2;
-    mesh = gprojt_fill(&c, &info, NULL);
-    GPROJT_REQUIRE(mesh != NULL);
-    GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, 4));
-    GPROJT_CHECK(info.irregular_count == 2);
-    gproj_mesh_destroy(mesh);
+    int32_t rings;
+    for (rings = 0; rings < 2; ++rings) {
+        gprojt_curve c = gprojt_half_disc();
+        gproj_fill_info info;
+        gproj_mesh *mesh;
+        c.corner[1] = 20, c.corner[2] = 70, c.given = false;
+        c.options.edge_length = 0.2, c.options.rings = rings;
+        mesh = gprojt_fill(&c, &info, NULL);
+        GPROJT_REQUIRE(mesh != NULL);
+        GPROJT_CHECK(gprojt_filling_is_good(&c, mesh, &info, rings ? 5 : 4));
+        GPROJT_CHECK(info.irregular_count == (rings ? 4 : 2));
+        gproj_mesh_destroy(mesh);
+    }
 }
 
 GPROJT_TEST(points_of_the_curve_are_kept) {
@@ -667,6 +672,9 @@ GPROJT_TEST(awkward_curves) {
         {12, 6, {0, 3, 6, 7, 8, 10}, true, {1.67,  0.12,  0.28,  0.30,  0.22,  1.95,  -0.04, 0.47,
                                             -1.11, 1.05,  -0.75, 0.13,  -0.89, -0.12, -1.01, -1.26,
                                             -0.24, -0.64, 0.42,  -1.11, 0.32,  -0.29, 1.93,  -0.79}},
+        /* the cheapest way between two corners crosses a tip whose sides are longer than it */
+        {10, 8, {1, 2, 3, 4, 5, 6, 7, 8}, true, {5,   0,  12,  9,  0,  4,   -8, 17,  -3, 1,
+                                                 -17, -5, -14, -9, -8, -17, 1,  -11, 12, -14}},
     };
     int32_t i;
     for (i = 0; i < (int32_t)(sizeof curve / sizeof *curve); ++i) {

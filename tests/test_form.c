@@ -2129,6 +2129,41 @@ GPROJT_TEST(wishes_fade_after_half) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A solve in frames gives its verdict when it ends. */
+GPROJT_TEST(verdicts_come_at_the_end) {
+    gproj_mesh *mesh = gprojt_noisy(6, 4, 0.02, 4);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    int32_t frames = 0;
+    gproj_add_planarity(form, 1);
+    gproj_add_fairness(form, 0.1);
+    GPROJT_REQUIRE(gproj_solve_begin(form, 6, NULL, NULL));
+    while (gproj_solve_is_on(form)) {
+        gproj_result result = gproj_solve_advance(form, 0);
+        GPROJT_CHECK((strstr(result.message, "nothing holds the mesh") == NULL) == gproj_solve_is_on(form));
+        ++frames;
+    }
+    GPROJT_CHECK(frames > 2);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* A constraint whose weight would guide, if it were a wish, keeps it to the end. */
+GPROJT_TEST(constraints_do_not_guide) {
+    double *end[2];
+    int i;
+    for (i = 0; i < 2; ++i) {
+        gproj_mesh *mesh = gprojt_noisy(0, 4, 0.05, 7);
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_set_schedule(form, gproj_add_planarity(form, 1), i ? gproj_guide(1) : gproj_keep(1));
+        GPROJT_CHECK(gproj_solve(form, 6, NULL).outcome == GPROJ_CONVERGED);
+        end[i] = gprojt_keep(mesh);
+        if (i) GPROJT_CHECK(gprojt_unmoved(mesh, end[0]));
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    free(end[0]), free(end[1]);
+}
+
 GPROJT_TEST(says_when_nothing_holds_the_mesh) {
     static const char note[] = "nothing holds the mesh, so the wishes may shrink it";
     int i;
@@ -3412,6 +3447,8 @@ int main(void) {
     GPROJT_RUN(default_guidance);
     GPROJT_RUN(wishes_fade_after_half);
     GPROJT_RUN(says_when_nothing_holds_the_mesh);
+    GPROJT_RUN(verdicts_come_at_the_end);
+    GPROJT_RUN(constraints_do_not_guide);
     GPROJT_RUN(guard_keeps_faces_from_turning);
     GPROJT_RUN(guard_on_and_off);
     GPROJT_RUN(guard_is_no_wish);

@@ -1069,6 +1069,16 @@ GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh_destroy(mesh);
 }
 
+/* Also where rows are added on the way, because the mesh is spoiled. */
+GPROJT_TEST(mended_without_memory) {
+    gproj_mesh *mesh = gprojt_noisy(0, 3, 0.4, 7);
+    gproj_solve_options options = gprojt_nearest();
+    GPROJT_CHECK(gprojt_flatten(mesh, 50, false).spoiled.total > 0);
+    GPROJT_CHECK(gprojt_flatten(mesh, 60, false).spoiled.total == 0);
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planarity, NULL, 60, &options) >= 30);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
     GPROJT_RUN(nearest_on_ellipsoids);
     GPROJT_RUN(short_first_steps);
@@ -1104,5 +1114,6 @@ int main(void) {
     GPROJT_RUN(real_meshes);
     GPROJT_RUN(flat_minima_are_accepted);
     GPROJT_RUN(every_allocation_fails_once);
+    GPROJT_RUN(mended_without_memory);
     return gprojt_report();
 }

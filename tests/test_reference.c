@@ -578,6 +578,22 @@ GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 2
     }
 }
 
+/* Boxes hold their items and nothing more: 8 segments along a line, 4 on each side. */
+GPROJT_TEST(boxes_are_tight) {
+    double point[27] = {0};
+    gproj_curve *curve;
+    int32_t i;
+    for (i = 0; i < 9; ++i) point[3 * i] = i;
+    curve = gproj_curve_create(9, point, false, NULL, NULL);
+    GPROJT_REQUIRE(curve != NULL && curve->tree.node_count == 3);
+    for (i = 0; i < 3; ++i) {
+        const gproji_node *node = &curve->tree.node[i];
+        GPROJT_CHECK(node->low[0] == (i == 2 ? 4 : 0) && node->high[0] == (i == 1 ? 4 : 8));
+        GPROJT_CHECK(node->low[1] == 0 && node->high[1] == 0 && node->low[2] == 0 && node->high[2] == 0);
+    }
+    gproj_curve_destroy(curve);
+}
+
 GPROJT_TEST(hierarchy_of_equal_items) { /* thousands of segments in one place: depth stays small, the lowest wins */
     int32_t n = 50000, i;
     double *x = (double *)calloc(3 * (size_t)n, sizeof(double));
@@ -672,6 +688,7 @@ int main(void) {
     GPROJT_RUN(faces_that_are_not_convex);
     GPROJT_RUN(convex_faces_are_fans);
     GPROJT_RUN(large_faces_take_linear_time);
+    GPROJT_RUN(boxes_are_tight);
     GPROJT_RUN(hierarchy_of_equal_items);
     GPROJT_RUN(every_allocation_fails_once);
     GPROJT_RUN(real_meshes);

@@ -212,11 +212,12 @@ GPROJT_TEST(triangles_are_not_bent) {
 }
 
 /* A step is refused that takes three quarters of a corner's area and leaves less than a quarter of what it was when the
-   solve began: a corner of a square goes along the diagonal, by the part s, which leaves the part 1 - 2 s. */
+   solve began: a corner of a square goes along the diagonal, by the part s, which leaves the part 1 - 2 s. One that has
+   grown may lose more. */
 GPROJT_TEST(steps_that_take_corners_are_refused) {
-    static const double way[7][2] = {{0, 0.36},    {0, 0.39},    {0, 0.6},    {0.36, 0.45},
-                                     {0.36, 0.47}, {0.42, 0.45}, {0.42, 0.49}};
-    static const bool refused[7] = {false, true, true, false, true, false, true};
+    static const double way[9][2] = {{0, 0.36},    {0, 0.39},    {0, 0.6},     {0.36, 0.45}, {0.36, 0.47},
+                                     {0.42, 0.45}, {0.42, 0.49}, {-1.5, 0.36}, {-1.5, 0.39}};
+    static const bool refused[9] = {false, true, true, false, true, false, true, false, true};
     gproj_solve_options options = gprojt_smooth();
     int32_t i, k, end;
     for (k = 0; k < 4; ++k) {
@@ -237,7 +238,7 @@ GPROJT_TEST(steps_that_take_corners_are_refused) {
                    (size_t)gproj_system_variable_count(system) * sizeof(double));
         gproj_solve_advance(form, 0);
         gproj_form_units(form, centre, &scale);
-        for (i = 0; i < 14; ++i) {
+        for (i = 0; i < 18; ++i) {
             const double *from = square + 3 * k, *to = square + 3 * (3 - k);
             int32_t c;
             for (c = 0; c < 2; ++c)
@@ -321,6 +322,38 @@ GPROJT_TEST(folds_are_let_go) {
     }
     GPROJT_CHECK(iterations[0] == iterations[1]);
     for (i = 2; i < 6; ++i) GPROJT_CHECK(iterations[i] > iterations[0]);
+}
+
+/* A fold is kept from turning on behind face 0 as behind others: three quads in a row, numbered from either end. */
+GPROJT_TEST(folds_are_kept_behind_any_face) {
+    static const int32_t fixed[6] = {0, 1, 2, 3, 4, 5}, free_end[2] = {6, 7};
+    double target[6] = {0, 0, 0, 0, 1, 0};
+    int32_t iterations[2], i, k;
+    target[0] = target[3] = 2 - cos(50 * acos(-1.0) / 180), target[2] = target[5] = sin(50 * acos(-1.0) / 180);
+    for (i = 0; i < 2; ++i) {
+        gprojt_soup soup;
+        gproj_solve_options options = gprojt_smooth();
+        gproj_mesh *mesh;
+        gproj_form *form;
+        gproj_result result;
+        memset(&soup, 0, sizeof soup);
+        for (k = 0; k < 8; ++k) gprojt_add_vertex(&soup, k < 6 ? k / 2 : 2, k % 2, k < 6 ? 0 : 1);
+        for (k = 0; k < 3; ++k) {
+            int32_t v = 2 * (i ? 2 - k : k);
+            gprojt_add_quad(&soup, v, v + 2, v + 3, v + 1);
+        }
+        mesh = gprojt_mesh_of(soup);
+        form = gproj_form_create(mesh, NULL);
+        gproj_add_planarity(form, 1);
+        gproj_add_fixed(form, 6, fixed, 1);
+        gproj_add_targets(form, 2, free_end, target, 1);
+        result = gproj_solve(form, 100, &options);
+        iterations[i] = result.iterations;
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+    GPROJT_CHECK(iterations[0] == iterations[1]);
 }
 
 /* A square grid, whose faces grow from one side to the next by a factor, over a surface with shakes in proportion to them. */
@@ -934,7 +967,7 @@ GPROJT_TEST(later_attempts_end_early) {
     }
 }
 
-/* Saves a form in an iteration. */
+/* Saves a form in an iteration; -1: in each, the last of which counts. */
 typedef struct gprojt_keeper {
     gproj_form *form;
     int32_t at;
@@ -945,7 +978,8 @@ typedef struct gprojt_keeper {
 static bool gprojt_keep_state(void *user, gproj_system *system, const gproj_iteration *iteration) {
     gprojt_keeper *keeper = (gprojt_keeper *)user;
     (void)system;
-    if (iteration->number != keeper->at) return true;
+    if (keeper->at >= 0 && iteration->number != keeper->at) return true;
+    free(keeper->state);
     keeper->size = gproj_state_size(keeper->form);
     keeper->state = malloc(keeper->size);
     return keeper->state && gproj_state_save(keeper->form, keeper->state, keeper->size, NULL) == GPROJ_OK;
@@ -1027,17 +1061,21 @@ GPROJT_TEST(wishes_of_the_attempt_that_counts) {
     }
 }
 
-/* Where nothing is wished there is no minimum to miss: later attempts converge like others. */
+/* Where nothing is wished there is no minimum to miss: later attempts converge like others, and can be saved. */
 GPROJT_TEST(nothing_wished_after_the_nearest) {
     int32_t limit, later = 0;
     for (limit = 4; limit <= 24; limit += 4) {
         gproj_mesh *mesh = gprojt_twisted(6, 0.2);
         gproj_form *form = gproj_form_create(mesh, NULL);
         gproj_solve_options options = gprojt_smooth();
+        gprojt_keeper keeper = {form, -1, NULL, 0};
         gproj_result result;
         gproj_add_planarity(form, 1), gproj_add_circularity(form, 1);
         options.nearest = options.skip_closeness = true;
+        options.on_iteration = gprojt_keep_state, options.user = &keeper;
         result = gproj_solve(form, limit, &options);
+        free(keeper.state);
+        GPROJT_CHECK(result.outcome != GPROJ_CANCELLED);
         if (result.attempts > 1 && result.residual <= result.tolerance) {
             ++later;
             GPROJT_CHECK(result.outcome == GPROJ_CONVERGED && result.optimality < HUGE_VAL);
@@ -1703,6 +1741,7 @@ int main(void) {
     GPROJT_RUN(steps_that_take_corners_are_refused);
     GPROJT_RUN(steps_that_take_edges_are_refused);
     GPROJT_RUN(folds_are_let_go);
+    GPROJT_RUN(folds_are_kept_behind_any_face);
     GPROJT_RUN(nothing_to_solve_before);
     GPROJT_RUN(steps_are_bent);
     GPROJT_RUN(patches_stay_whole);
