@@ -2938,7 +2938,8 @@ GPROJI_INLINE void gproji_sum_add(gproji_sum *s, double x) {
 
 /* += a b, for |a|, |b| < 1e100. */
 GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
-    double p = a * b, ca = 134217729.0 * a, cb = 134217729.0 * b; /* 2^27 + 1 splits a double into halves */
+    /* 2^27 + 1 splits a double into halves. Volatile: compilers may not contract these products with the sums below. */
+    volatile double p = a * b, ca = 134217729.0 * a, cb = 134217729.0 * b;
     double ah = ca - (ca - a), al = a - ah, bh = cb - (cb - b), bl = b - bh;
     s->low += ((ah * bh - p) + ah * bl + al * bh) + al * bl;
     gproji_sum_add(s, p);
