@@ -463,7 +463,8 @@ typedef struct gproj_cholesky_info {
     double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
     size_t factor_bytes;    /* memory for the values of L */
     size_t work_bytes;      /* memory for the work arrays in factor and solve */
-    int32_t failed_column;  /* the column of A whose pivot was not finite and > 0 in the last factorisation; else -1 */
+    int32_t failed_column;  /* the column of A whose pivot was not finite and >= DBL_MIN in the last factorisation, or
+                               -1 */
     const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
@@ -3012,7 +3013,7 @@ typedef struct gproji_kernels {
     void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Factors a diagonal tile in place and writes the inverses of the diagonal. Returns -1, or the first column (from 0
-       for `skip`) whose pivot is not positive and finite. */
+       for `skip`) whose pivot is not finite and >= DBL_MIN: below, 1 / pivot may overflow. */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
     /* Steps of L y = b and L' x = y for one column block: the unknowns replace z[0..block); the other rows up to `rows`
        (a multiple of block) are updated, or read. `forward_two` takes two right-hand sides, z and y, in one pass. */
@@ -3192,7 +3193,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         int32_t j, k, r;                                                                                               \
         for (j = skip; j < B; ++j, column += stride) {                                                                 \
             double *later = column + stride, reciprocal, root, scale;                                                  \
-            if (!(pivot > 0) || !gproji_is_finite(pivot)) return j - skip;                                             \
+            if (!(pivot >= DBL_MIN) || !gproji_is_finite(pivot)) return j - skip;                                      \
             reciprocal = 1.0 / pivot, root = sqrt(pivot), scale = 1.0 / root;                                          \
             if (j + 1 < B) pivot = later[j + 1] - column[j + 1] * (column[j + 1] * reciprocal);                        \
             for (k = j + 1; k < B; ++k, later += stride) {                                                             \
@@ -3764,7 +3765,7 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
 }
 #endif
 
-/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
+/* Factors a panel in place. Returns -1 or the first column whose pivot fails. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
     int32_t block = kernels->block, start, failed;
