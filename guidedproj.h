@@ -522,7 +522,7 @@ typedef struct gproj_least_squares {
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
-    double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
+    double damping;       /* 0 to 1e50, in the units of A's entries; makes the solution unique if it is > 0 */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
@@ -6847,7 +6847,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
         return gproji_refuse(error, "least squares: an array is missing");
     if (!gproji_squares_finite(p->damping) || p->damping < 0)
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "least squares: the damping is negative or not a number");
+                           "least squares: the damping is %g, not 0 to 1e50", p->damping);
     for (i = 0; i < p->rows; ++i)
         if (!gproji_squares_finite(p->b[i]))
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, i,
@@ -21798,8 +21798,8 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     int32_t v, e;
     error = error ? error : &own;
     gproji_error_clear(error);
-    if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
-        !gproji_take_balance(form, error, &p))
+    if (gproji_need_statics(form, left ? "find imbalance" : "find forces", error) ||
+        !gproji_positions_are_finite(form, error) || !gproji_take_balance(form, error, &p))
         return error->code;
     /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, 1, form->mesh->position, &p);
@@ -22010,7 +22010,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c, wrong = -1;
-    gproj_code code = gproj_get_loads(form, reactions, error);
+    gproj_code code = gproji_begin_question(form, "get reactions", reactions != NULL, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "get reactions", error);
+    if (code == GPROJ_OK) code = gproj_get_loads(form, reactions, error);
     if (code) return code;
     gproji_add_forces(form, form->mesh->position, NULL, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {
