@@ -369,8 +369,9 @@ typedef struct gproj_memory {
 
    Functions that create an object take a `gproj_error *` (may be NULL) and return NULL on failure. Objects that
    are built up by many calls (gproj_system, gproj_form) keep their first error: later calls do nothing and
-   return -1, so one check at the end is enough. Questions to such an object, which take a `gproj_error *` of their
-   own, leave it as it was if they are refused. "Not converged" and "not positive definite" are outcomes, not errors. */
+   return -1 or its code, so one check at the end is enough. Questions to such an object, which take a `gproj_error *`
+   of their own, leave it as it was if they are refused. "Not converged" and "not positive definite" are outcomes, not
+   errors. */
 typedef enum gproj_code {
     GPROJ_OK,
     GPROJ_ERROR_MEMORY,
@@ -422,9 +423,10 @@ enum {
     GPROJ_NUMBER_SIZE = 32
 };
 
-/* Reads a decimal number ([+-]digits[.digits][e[+-]digits], also "inf" and "nan" in any case, so that readers
-   can refuse them by name) from text[0..size-1], correctly rounded. Returns the number of characters used, 0 if there
-   is no number. Numbers too large become infinite. */
+/* Reads a decimal number ([+-]digits[.digits][e[+-]digits] with a digit before or after the point, also "inf",
+   "infinity" and "nan" in any case, so that readers can refuse them by name) from text[0..size-1], correctly rounded.
+   Returns the number of characters used; 0, and *value as it was, if there is no number. Numbers too large become
+   infinite. */
 GPROJ_API size_t gproj_number_read(const char *text, size_t size, double *value);
 
 /* Writes the shortest decimal text that reads back to the same bits, with a final NUL; returns the length. */
@@ -463,7 +465,8 @@ typedef struct gproj_cholesky_info {
     double flops;           /* of one factorisation: sum of (column count)^2 over the columns of exact L */
     size_t factor_bytes;    /* memory for the values of L */
     size_t work_bytes;      /* memory for the work arrays in factor and solve */
-    int32_t failed_column;  /* the column of A whose pivot was not finite and > 0 in the last factorisation; else -1 */
+    int32_t failed_column;  /* the column of A whose pivot was not finite and >= DBL_MIN in the last factorisation, or
+                               -1 */
     const char *kernels;    /* the vector units that are used: "AVX-512", "AVX2", "vectors of two", "scalar" */
 } gproj_cholesky_info;
 
@@ -521,7 +524,7 @@ typedef struct gproj_least_squares {
     const double *b;      /* rows; |b| <= 1e50 */
     const double *lower;  /* columns, |lower| <= 1e50 or -INFINITY: no bound; NULL: no bounds */
     const double *upper;  /* columns, |upper| <= 1e50 or INFINITY; NULL: no bounds. lower = upper fixes a variable */
-    double damping;       /* >= 0, in the units of A's entries; makes the solution unique */
+    double damping;       /* 0 to 1e50, in the units of A's entries; makes the solution unique if it is > 0 */
 } gproj_least_squares;
 
 typedef enum gproj_least_squares_outcome {
@@ -634,7 +637,8 @@ enum {
 };
 
 typedef struct gproj_group {
-    const char *name; /* for reports, e.g. "planarity"; copied, cut to whole characters in GPROJ_NAME_SIZE */
+    const char *name; /* for reports, e.g. "planarity": a line of UTF-8, not NULL; copied, cut to whole characters in
+                         GPROJ_NAME_SIZE */
     gproj_kind kind;
     /* Few rows with many variables each (a volume): kept out of the sparse matrix and handled by a low-rank update,
        which costs half a solve more per row. */
@@ -2011,7 +2015,8 @@ GPROJ_API int32_t gproj_version(void) { return GPROJ_VERSION_NUMBER; }
    neighbouring doubles, digits are produced until the rest is inside the gap.
    Invariant: a gproji_big has no leading zero limb; zero has count 0. */
 
-/* 768 digits and a sticky one decide every double; 10^1100 = 5^1100 2^1100, and 5^1100 has 80 limbs. */
+/* 768 digits and a sticky one decide every double. The largest integers are 10^800, with 84 limbs, and 5^1130; a
+   dividend has one more limb. */
 enum {
     GPROJI_BIG_LIMBS = 96,
     GPROJI_DIGITS_MAX = 800
@@ -2088,7 +2093,6 @@ GPROJI_INTERNAL int32_t gproji_big_compare_sum(const gproji_big *a, const gproji
     gproji_big sum;
     uint64_t carry = 0;
     int32_t count = gproji_max(a->count, b->count), i;
-    if (count < c->count - 1) return -1;
     for (i = 0; i < count; ++i) {
         if (i < a->count) carry += a->limb[i];
         if (i < b->count) carry += (uint64_t)b->limb[i] << shift;
@@ -2156,7 +2160,7 @@ GPROJI_INLINE uint64_t gproji_multiply_64(uint64_t a, uint64_t b, uint64_t *low)
     return a1 * b1 + (p01 >> 32) + (p10 >> 32) + (middle >> 32);
 }
 
-/* The double nearest to w 10^power for w > 0 and |power| <= 27, where 5^|power| has 64 bits. */
+/* The double nearest to w 10^power for w > 0 and |power| <= 27: 5^27 has 63 bits. */
 GPROJI_INTERNAL uint64_t gproji_read_short(uint64_t w, int32_t power) {
     int32_t shift = 64 - gproji_bit_length(w), shift5, half, k;
     uint64_t five = 1, high, low, quotient = 0;
@@ -2322,8 +2326,8 @@ GPROJI_INTERNAL int32_t gproji_write_digits(uint64_t fraction, int32_t exponent,
     /* 2. Is it in [1, 10) already (for the shortest text: once rounded up)? */
     side = limit ? gproji_big_compare(&r, &s) : gproji_big_compare_sum(&r, &m, up, &s);
     *point = k + 1;
-    /* Not where side = 0 and the digits round up to 10^k: only 10^23 = 5^23 2^23 is a midpoint, and the double below it
-       has an even fraction. */
+    /* side = 0: 10^k is midway to the next double. The digits 0 and 9 9 ... would follow if v did not round up to it at
+       once; but only 10^23 = 5^23 2^23 is a midpoint, and the double below it has an even fraction. */
     if (side < 0) {
         *point = k;
         gproji_big_multiply(&r, 10, 0);
@@ -2937,7 +2941,8 @@ GPROJI_INLINE void gproji_sum_add(gproji_sum *s, double x) {
 
 /* += a b, for |a|, |b| < 1e100. */
 GPROJI_INLINE void gproji_sum_add_product(gproji_sum *s, double a, double b) {
-    double p = a * b, ca = 134217729.0 * a, cb = 134217729.0 * b; /* 2^27 + 1 splits a double into halves */
+    /* 2^27 + 1 splits a double into halves. Volatile: compilers may not contract these products with the sums below. */
+    volatile double p = a * b, ca = 134217729.0 * a, cb = 134217729.0 * b;
     double ah = ca - (ca - a), al = a - ah, bh = cb - (cb - b), bl = b - bh;
     s->low += ((ah * bh - p) + ah * bl + al * bh) + al * bl;
     gproji_sum_add(s, p);
@@ -2984,7 +2989,7 @@ GPROJI_INTERNAL bool gproji_solve_square3(const double a[6], double shift, const
 
 enum {
     GPROJI_CACHE_LINE = 8, /* values */
-    GPROJI_FAR_TILES = 96  /* products with more columns fetch their tiles ahead */
+    GPROJI_FAR_TILES = 96  /* least columns of a product that fetches its tiles ahead */
 };
 
 /* A piece of what is scattered: rows of a matrix, from row `from` on, and their targets in another one. Without gaps:
@@ -3010,7 +3015,7 @@ typedef struct gproji_kernels {
     void (*solve)(int32_t rows, int32_t k, const double *a, const double *b, ptrdiff_t stride, int32_t left, double *c,
                   ptrdiff_t ldc, const double *triangle, const double *inverse, int32_t skip);
     /* Factors a diagonal tile in place and writes the inverses of the diagonal. Returns -1, or the first column (from 0
-       for `skip`) whose pivot is not positive and finite. */
+       for `skip`) whose pivot is not finite and >= DBL_MIN: below, 1 / pivot may overflow. */
     int32_t (*factor)(double *tile, ptrdiff_t stride, double *inverse, int32_t skip);
     /* Steps of L y = b and L' x = y for one column block: the unknowns replace z[0..block); the other rows up to `rows`
        (a multiple of block) are updated, or read. `forward_two` takes two right-hand sides, z and y, in one pass. */
@@ -3190,7 +3195,7 @@ typedef double gproji_lanes_at_8 __attribute__((vector_size(64), aligned(8), may
         int32_t j, k, r;                                                                                               \
         for (j = skip; j < B; ++j, column += stride) {                                                                 \
             double *later = column + stride, reciprocal, root, scale;                                                  \
-            if (!(pivot > 0) || !gproji_is_finite(pivot)) return j - skip;                                             \
+            if (!(pivot >= DBL_MIN) || !gproji_is_finite(pivot)) return j - skip;                                      \
             reciprocal = 1.0 / pivot, root = sqrt(pivot), scale = 1.0 / root;                                          \
             if (j + 1 < B) pivot = later[j + 1] - column[j + 1] * (column[j + 1] * reciprocal);                        \
             for (k = j + 1; k < B; ++k, later += stride) {                                                             \
@@ -3479,7 +3484,7 @@ GPROJI_INLINE gproji_shape gproji_shape_of(int32_t w, int32_t below) {
     if (w <= GPROJI_NARROW) return shape;
     shape.last = gproji_pieces(shape.end - GPROJI_NARROW, GPROJI_CHUNK) * GPROJI_CHUNK;
 #endif
-    if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else whole columns share few cache lines */
+    if (shape.stride % 64 == 0) shape.stride += GPROJI_BLOCK; /* else a row's entries share few sets of the cache */
     return shape;
 }
 
@@ -3543,13 +3548,11 @@ GPROJI_INTERNAL gproji_panel gproji_make_panel(const gproji_kernels *kernels, in
                                                double *inverse, double *update) {
     gproji_panel panel;
     int32_t block = kernels->block;
+    memset(&panel, 0, sizeof panel);
     panel.kernels = kernels;
     panel.shape = gproji_shape_of(w, below);
     panel.w = w, panel.shift = panel.shape.shift, panel.top = panel.shift & -block;
     panel.rows = panel.shift + w + gproji_round_up(below, block);
-    panel.first = panel.last = 0;
-    panel.pivots[0] = panel.pivots[1] = panel.at = panel.end = panel.columns = 0;
-    panel.fresh = false;
     panel.update_rows = gproji_round_up(below, GPROJI_BLOCK);
     panel.values = values, panel.inverse = inverse, panel.update = update;
     return panel;
@@ -3762,7 +3765,7 @@ GPROJI_INTERNAL void gproji_panel_update(const gproj_parallel *parallel, gproji_
 }
 #endif
 
-/* Factors a panel in place. Returns -1 or the first column whose pivot is not > 0. parallel: NULL within a task. */
+/* Factors a panel in place. Returns -1 or the first column whose pivot fails. parallel: NULL within a task. */
 GPROJI_INTERNAL int32_t gproji_panel_factor(const gproj_parallel *parallel, gproji_panel *panel) {
     const gproji_kernels *kernels = panel->kernels;
     int32_t block = kernels->block, start, failed;
@@ -4105,11 +4108,11 @@ GPROJI_INTERNAL void gproji_amd_eliminate(gproji_amd *amd, int32_t pivot) {
     amd->flops += gproji_front_flops(amd->weight[pivot], (double)amd->degree[pivot] + amd->buckets - 1 - amd->total);
 }
 
-/* Gives all dense nodes this kind: those with more than 10 sqrt(n) variables next to them. They are put last unseen, as
-   they would make every degree and distance meaningless and the search slow. `total`: the weight of all nodes. */
+/* Gives all dense nodes this kind: those with more than 10 sqrt(total) variables next to them, `total` the weight of
+   all nodes. They are put last unseen, as they would make every degree and distance meaningless and the search slow. */
 GPROJI_INTERNAL void gproji_mark_dense(const gproji_graph *graph, int32_t total, unsigned char *kind,
                                        unsigned char dense) {
-    double least = gproji_fmax(16.0, 10.0 * sqrt((double)total));
+    double least = 10.0 * sqrt((double)total);
     int32_t i, heaviest = 0;
     int64_t k;
     for (i = 0; i < graph->nodes; ++i) heaviest = gproji_max(heaviest, graph->weight[i]);
@@ -6845,7 +6848,7 @@ GPROJI_INTERNAL gproj_code gproji_squares_check(const gproj_least_squares *p, co
         return gproji_refuse(error, "least squares: an array is missing");
     if (!gproji_squares_finite(p->damping) || p->damping < 0)
         return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1,
-                           "least squares: the damping is negative or not a number");
+                           "least squares: the damping is %g, not 0 to 1e50", p->damping);
     for (i = 0; i < p->rows; ++i)
         if (!gproji_squares_finite(p->b[i]))
             return gproji_fail(error, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, i,
@@ -21807,8 +21810,8 @@ GPROJI_INTERNAL gproj_code gproji_find_balance(gproj_form *form, double *densiti
     int32_t v, e;
     error = error ? error : &own;
     gproji_error_clear(error);
-    if (gproji_need_statics(form, "find forces", error) || !gproji_positions_are_finite(form, error) ||
-        !gproji_take_balance(form, error, &p))
+    if (gproji_need_statics(form, left ? "find imbalance" : "find forces", error) ||
+        !gproji_positions_are_finite(form, error) || !gproji_take_balance(form, error, &p))
         return error->code;
     /* Loads relative to their mean make the problem independent of units. */
     mean = gproji_set_loads(form, 1, form->mesh->position, &p);
@@ -22020,7 +22023,9 @@ GPROJ_API gproj_code gproj_set_forces(gproj_form *form, const double *densities,
 
 GPROJ_API gproj_code gproj_get_reactions(const gproj_form *form, double *reactions, gproj_error *error) {
     int32_t v, c, wrong = -1;
-    gproj_code code = gproj_get_loads(form, reactions, error);
+    gproj_code code = gproji_begin_question(form, "get reactions", reactions != NULL, error);
+    if (code == GPROJ_OK) code = gproji_need_statics(form, "get reactions", error);
+    if (code == GPROJ_OK) code = gproj_get_loads(form, reactions, error);
     if (code) return code;
     gproji_add_forces(form, form->mesh->position, NULL, reactions);
     for (v = 0; v < form->mesh->vertex_count; ++v) {

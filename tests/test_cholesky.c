@@ -763,6 +763,25 @@ GPROJT_TEST(cholesky_not_positive_definite) {
     gproj_cholesky_destroy(c);
 }
 
+/* A pivot below DBL_MIN, whose inverse may overflow, fails where it stands, not in the next column (0 times infinity). */
+GPROJT_TEST(cholesky_names_a_tiny_pivot) {
+    static const int64_t start[4] = {0, 2, 4, 5};
+    static const int32_t row[5] = {0, 1, 1, 2, 2};
+    gproj_cholesky *c = gproj_cholesky_create(NULL);
+    gproj_cholesky_options options = {GPROJ_ORDERING_NATURAL, NULL, false, false};
+    int32_t k;
+    GPROJT_CHECK(gproj_cholesky_analyse(c, 3, start, row, &options) == GPROJ_OK);
+    for (k = 0; k < 3; ++k) {
+        double values[5] = {1, 0, 1, 0, 1};
+        values[2 * k] = 1e-310;
+        GPROJT_CHECK(gproj_cholesky_factor(c, values) == GPROJ_NOT_POSITIVE_DEFINITE);
+        GPROJT_CHECK(gproj_cholesky_get_info(c).failed_column == k);
+        values[2 * k] = 1e-305;
+        GPROJT_CHECK(gproj_cholesky_factor(c, values) == GPROJ_FACTORED);
+    }
+    gproj_cholesky_destroy(c);
+}
+
 /* Two grids whose columns alternate, in their order as it stands: tasks go through one grid, then through the other. Of
    failing columns in both the first one is named, whichever grid it is in. */
 GPROJT_TEST(cholesky_names_the_first_failing_column) {
@@ -1159,6 +1178,7 @@ int main(void) {
     GPROJT_RUN(cholesky_refactor_without_allocation);
     GPROJT_RUN(cholesky_refine_improves);
     GPROJT_RUN(cholesky_not_positive_definite);
+    GPROJT_RUN(cholesky_names_a_tiny_pivot);
     GPROJT_RUN(cholesky_names_the_first_failing_column);
     GPROJT_RUN(cholesky_same_bits_for_any_workers);
 #ifndef GPROJT_KERNELS

@@ -1000,6 +1000,7 @@ GPROJT_TEST(bad_arguments) {
     gproj_least_squares p = s.p;
     volatile double zero = 0;
     double nan = zero / zero, infinity = HUGE_VAL;
+    gproj_error error;
     s.x[0] = 0.25;
     check_refused(NULL, s.x, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1);
     check_refused(&p, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1);
@@ -1013,6 +1014,8 @@ GPROJT_TEST(bad_arguments) {
     p.damping = -1, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
     p.damping = nan, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
     p.damping = infinity, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_NONE, -1), p = s.p;
+    p.damping = 1e60, gproj_solve_least_squares(&p, NULL, s.x, NULL, &error), p = s.p;
+    GPROJT_CHECK(error.code == GPROJ_ERROR_NUMBER && strstr(error.message, "1e+60, not 0 to 1e50"));
     p.rows = 3, check_refused(&p, s.x, GPROJ_ERROR_INDEX, GPROJ_PLACE_COLUMN, 0), p = s.p;
     s.b[4] = nan, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 4), s.b[4] = 1;
     s.b[4] = 1e60, check_refused(&p, s.x, GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 4), s.b[4] = 1;

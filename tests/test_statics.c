@@ -2121,6 +2121,8 @@ enum {
     GPROJT_MEASURE_FORCES,
     GPROJT_QUESTIONS
 };
+static const char *const gprojt_question_names[GPROJT_QUESTIONS] = {
+    "set forces: ", "find forces: ", "find imbalance: ", "get loads: ", "get reactions: ", "measure forces: "};
 
 static gproj_code gprojt_ask_form(gproj_form *form, int question, double *w, gproj_error *error) {
     gproj_code code = error ? error->code : GPROJ_OK;
@@ -2269,7 +2271,8 @@ GPROJT_TEST(refused_questions_leave_the_form) {
     /* 3. No array, no form. */
     gprojt_check_question(form, GPROJT_FIND_IMBALANCE, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
     gprojt_check_question(form, GPROJT_GET_LOADS, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
-    gprojt_check_question(form, GPROJT_GET_REACTIONS, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1, "no array");
+    gprojt_check_question(form, GPROJT_GET_REACTIONS, NULL, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_NONE, -1,
+                          "get reactions: there is no array");
     GPROJT_CHECK(gproj_get_forces(form, NULL, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "no array"));
     for (e = 0; e < GPROJT_QUESTIONS; ++e)
         GPROJT_CHECK(gprojt_ask_form(NULL, e, w, &error) == GPROJ_ERROR_ARGUMENT && strstr(error.message, "no form"));
@@ -2301,8 +2304,10 @@ GPROJT_TEST(refusals_without_equilibrium) {
         gproj_form *form = gproj_form_create(mesh, NULL);
         w[0] = 1;
         GPROJT_CHECK(gproj_get_forces(form, w, NULL) == GPROJ_OK && w[0] == 0);
-        for (i = 0; i < GPROJT_QUESTIONS; ++i)
+        for (i = 0; i < GPROJT_QUESTIONS; ++i) {
             gprojt_check_question(form, i, w, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, "gproj_add_equilibrium before");
+            gprojt_check_question(form, i, w, GPROJ_ERROR_STATE, GPROJ_PLACE_NONE, -1, gprojt_question_names[i]);
+        }
         gproj_form_destroy(form);
     }
     gproj_mesh_destroy(mesh);

@@ -72,14 +72,21 @@ GPROJT_TEST(rows_and_weights_are_replaced) {
     gproj_system_destroy(s);
 }
 
-/* (x - y)^2 by three terms of 1e16 each, whose plain sum is off by 2; huge numbers, whose exact products overflow. */
+/* (x - y)^2 by three terms of 1e16 each, whose plain sum is off by 2; products that are 1 more than doubles, also where
+   compilers contract; huge numbers, whose exact products overflow. */
 GPROJT_TEST(values_of_large_terms_that_cancel) {
     static const gproj_term square[3] = {{0, 0, 1}, {0, 1, -2}, {1, 1, 1}};
-    double x[2] = {1e8, 1e8 + 1};
+    const double root = ldexp(1, 30) + 1, rounded = root * root; /* 2^60 + 2^31 + 1 */
+    const gproj_term product[2] = {{0, 1, 1}, {2, -1, -1}}, linear[2] = {{0, -1, root}, {2, -1, -1}};
+    double x[3] = {1e8, 1e8 + 1, rounded};
     gproj_system *s = gproj_system_create(NULL);
-    gproj_system_add_variables(s, 2, 1, x);
+    gproj_system_add_variables(s, 3, 1, x);
     gproj_system_add_row(s, gprojt_add_group(s, "square", GPROJ_CONSTRAINT, 1), 3, square, 0, 0);
     GPROJT_CHECK(gproj_system_row_value(s, 0, 0, NULL) == 1);
+    gproj_system_values(s)[0] = gproj_system_values(s)[1] = root;
+    gproj_system_add_row(s, 0, 2, product, 0, 1);
+    gproj_system_add_row(s, 0, 2, linear, 0, 2);
+    GPROJT_CHECK(gproj_system_row_value(s, 0, 1, NULL) == 1 && gproj_system_row_value(s, 0, 2, NULL) == 1);
     gproj_system_values(s)[0] = 1e152, gproj_system_values(s)[1] = 0;
     GPROJT_NEAR(gproj_system_row_value(s, 0, 0, NULL) / 1e304, 1, 1e-14);
     gproj_system_values(s)[0] = 1e200;
