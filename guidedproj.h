@@ -22593,7 +22593,7 @@ GPROJI_INTERNAL void gproji_begin_corners(const gproji_part *part) {
    (gproji_tell_obstacles, gproji_tell_overhang: of forces; gproji_tell_held, gproji_tell_planes,
    gproji_tell_asymptotic: of flat faces; gproji_tell_angles: of circular ones), and which damage was done on the way
    (gproji_tell_spoiled). Each gproji_tell_ appends a clause to the sentence, or nothing; gproji_doubt_equilibrium
-   replaces sentence and outcome. They run when a solve has ended, so the system's step and saved x are free for work. */
+   replaces sentence and outcome. They run when a solve has ended: the system's step and saved x are free for work. */
 
 /* -- equilibrium -- */
 
