@@ -1732,7 +1732,24 @@ GPROJT_TEST(refused_solves_make_no_attempt) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A form without groups gets one of the library's own, which is group 0, and no other one in its next solve. */
+GPROJT_TEST(own_groups_are_added_once) {
+    gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(4, 4));
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options;
+    int32_t groups;
+    memset(&options, 0, sizeof options);
+    options.smooth = true;
+    gproj_solve(form, 3, &options);
+    groups = gproj_system_group_count(gproj_form_system(form));
+    gproj_solve(form, 3, &options);
+    GPROJT_CHECK(groups > 0 && gproj_system_group_count(gproj_form_system(form)) == groups);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 int main(void) {
+    GPROJT_RUN(own_groups_are_added_once);
     GPROJT_RUN(iterations_do_not_grow);
     GPROJT_RUN(changes_are_nearly_the_least);
     GPROJT_RUN(corners_are_kept);

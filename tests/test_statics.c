@@ -970,6 +970,32 @@ static void gprojt_check_unbalanced(const gproj_mesh *mesh, const gproj_result *
             GPROJT_CHECK(fabs(sum[v]) <= off[0] * (1 + 1e-9));
 }
 
+/* Vertex 0 may be the one that is off most. */
+GPROJT_TEST(vertex_0_is_out_of_balance) {
+    gproj_mesh *mesh = gprojt_vault(QUADS, 3, 3, 0);
+    double *load = gprojt_numbers(3 * mesh->vertex_count), told = 0;
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_loads loads = gprojt_no_loads();
+    gproj_supports supports;
+    gproj_result result;
+    const char *piece;
+    int32_t v, vertex[3] = {-1, -1, -1}, last = mesh->vertex_count - 1;
+    for (v = 0; v <= last; ++v) load[3 * v + 2] = v == 0 ? -5 : -1 - 0.1 * v;
+    memset(&supports, 0, sizeof supports);
+    supports.count = 1, supports.vertex = &last;
+    loads.point_load = load;
+    gproj_add_equilibrium(form, &loads, &supports, 1);
+    gproj_add_fixed(form, 0, NULL, 1);
+    result = gproj_solve(form, 5, NULL);
+    piece = strstr(result.message, "this shape: vertices ");
+    GPROJT_CHECK(piece && sscanf(piece, "this shape: vertices %d, %d, %d out of balance by up to %lf of", &vertex[0],
+                                 &vertex[1], &vertex[2], &told) == 4);
+    GPROJT_CHECK(vertex[2] == 0 && vertex[1] == last - 1 && vertex[0] == last - 2 && told > 0.9);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+    free(load);
+}
+
 GPROJT_TEST(plates_are_infeasible) {
     int shape;
     for (shape = QUADS; shape <= HEXAGONS; ++shape) {
@@ -2655,6 +2681,7 @@ int main(void) {
     GPROJT_RUN(bounds_of_ones_own_on_forces);
     GPROJT_RUN(no_loads_no_forces);
     GPROJT_RUN(funicular_shapes_and_plates);
+    GPROJT_RUN(vertex_0_is_out_of_balance);
     GPROJT_RUN(plates_are_infeasible);
     GPROJT_RUN(forces_beyond_all_numbers);
     GPROJT_RUN(forces_are_kept_and_set);
