@@ -758,6 +758,9 @@ GPROJT_TEST(cholesky_not_positive_definite) {
     }
     m.value[p] = NAN;
     GPROJT_CHECK(gproj_cholesky_factor(c, m.value) == GPROJ_NOT_POSITIVE_DEFINITE);
+    GPROJT_CHECK(gproj_cholesky_get_info(c).failed_column >= 0);
+    GPROJT_CHECK(gproj_cholesky_analyse(c, m.n, m.start, m.row, NULL) == GPROJ_OK);
+    GPROJT_CHECK(gproj_cholesky_get_info(c).failed_column == -1); /* nothing is factored yet */
     free(x);
     matrix_free(&m);
     gproj_cholesky_destroy(c);
