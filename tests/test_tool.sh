@@ -163,6 +163,10 @@ expect 2 "--report writes to a file" grid.obj -o new.obj --planar --report=-
 expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1
 expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1 --fairness 0.1 --fix boundary
 expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
+long=$(printf 'a%.0s' {1..300}).obj
+expect 2 "cannot be written: File name too long" grid.obj -o "$long" --planar
+cp grid.obj program.obj && chmod +x program.obj # which its user may enter, were it a folder
+expect 2 "cannot be written: Not a directory" grid.obj -o program.obj/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
 expect 2 "--colour is for a picture" grid.obj -o new.obj --planar --colour area
