@@ -655,7 +655,7 @@ static double skew_of_face(const tool *t, int32_t face) {
     return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / t->after.mean_edge;
 }
 
-/* The angle between two vectors, in degrees. */
+/* The angle between two unit vectors, in degrees. */
 static double angle_between(const double a[3], const double b[3]) {
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     return 57.29577951308232 * atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
@@ -666,10 +666,12 @@ static double bend_of_face(const tool *t, int32_t face) {
     int32_t h = t->mesh->face_halfedge[face], k;
     double a[3], b[3], largest = 0;
     gproj_mesh_face_area_vector(t->mesh, face, a);
+    gprojx_unit(a);
     for (k = 0; k < t->mesh->face_degree[face]; ++k, h = t->mesh->next[h]) {
         int32_t beside = t->mesh->face[t->mesh->twin[h]];
         if (beside < 0) continue;
         gproj_mesh_face_area_vector(t->mesh, beside, b);
+        gprojx_unit(b);
         largest = fmax(largest, angle_between(a, b));
     }
     return largest;
