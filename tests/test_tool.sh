@@ -667,6 +667,8 @@ run grid.obj -o part.obj --planar --fix marked.txt
 run grid.obj -o part.obj --planar --fix corners --move 40,0,0,9=0
 run grid.obj -o whole.obj --planar --fix corners
 cmp -s part.obj whole.obj && pass || fail "--move with the weight 0 moves something"
+printf '0\r# the second\r8,99\r' >cr.txt # lines end as on old Macs
+expect 3 "there is no vertex 99" grid.obj -o new.obj --planar --fix cr.txt
 printf '# nothing\n' >none.csv
 expect 3 "none.csv, line 1: there are no loads in it" grid.obj -o new.obj --equilibrium --loads none.csv
 expect 3 "loads" grid.obj -o new.obj --equilibrium --fix boundary --density 1e300 --picture new.svg
