@@ -58,6 +58,21 @@ else
     panels circular torus.obj 1 --planar --circular --offset=-0.3,offset.obj --support strips.obj
 fi
 
+# ---- angles do not depend on the unit ----
+
+for unit in 1e69 1e-70; do
+    awk -v s=$unit '$1 == "v" { printf "v %.17g %.17g %.17g\n", s * $2, s * $3, s * $4; next } { print }' torus.obj >unit.obj
+    for mesh in torus unit; do
+        "$tool" $mesh.obj -o same.obj --fix 0 --closeness 0 --quiet --panels out.svg --panel-list out.csv --colour bend --picture $mesh.svg ||
+            fail "panels of $mesh.obj"
+        awk -F, '$1 == "edge" && NF > 6 { printf "%.6f\n", $7 }' out.csv | sort >$mesh.txt
+        grep -o '<path[^>]*fill="[^"]*"' $mesh.svg | grep -o 'fill=".*' >$mesh.fills
+    done
+    [ "$(grep -c . torus.txt)" = 512 ] && cmp -s torus.txt unit.txt && cmp -s torus.fills unit.fills && pass ||
+        fail "angles in the unit $unit: $(diff torus.txt unit.txt | head -n 3 | tr '\n' ' ')"
+done
+rm -f out.svg out.csv
+
 # ---- refusals ----
 
 refused() { # refused STATUS PART ARGUMENTS...: no output is touched

@@ -222,6 +222,14 @@ P='{"input": "roof.obj",\n"planar": true,\n'
 refuse 3 'there is no key "plannar"; did you mean "planar"?' '{"input": "roof.obj",\n\n"plannar": true}'
 refuse 3 '"planar": the key stands twice' "$P\"planar\": 2}"
 refuse 3 '"iterations": expected a string or number' "${P}\"iterations\": true}"
+refuse 3 '"midsphere": expected true, or a string or number W' "${P}\"midsphere\": false}"
+refuse 3 "the picture 'x.png' must end in .svg" "${P}\"picture\": \"x.png\"}"
+refuse 3 '--report writes to a file' "${P}\"report\": \"-\"}"
+refuse 3 '--encoding is for outputs' "${P}\"encoding\": \"ascii\"}"
+refuse 1 '--conical needs the normals' '{"conical": true, "input": "roof.obj"}'
+refuse 2 '--circular is for planar faces' '{"input": "roof.obj",\n"circular": true}'
+refuse 3 '--nearest has nothing to be near to' "${P}\"nearest\": true, \"closeness\": 0}"
+refuse 1 '--weld is for an input' '{"fill": "curve.obj", "weld": true}'
 refuse 3 '--iterations 0: expected' "${P}\"iterations\": 0}"
 refuse 4 '--fix: there is no vertex 49' "${P}\"fix\": [\"0-3\",\n\"49\"]}"
 refuse 3 '"fix": expected' "${P}\"fix\": [[1]]}"

@@ -106,7 +106,7 @@ done
 expect 2 "expected a height" grid.obj -o new.obj --planar --lift 0
 expect 2 "expected a height" grid.obj -o new.obj --planar --lift up
 expect 2 "expected a height" grid.obj -o new.obj --planar --lift 1e300
-expect 2 "--state is a file" grid.obj -o new.obj --planar --state -
+expect 2 "--state writes to a file" grid.obj -o new.obj --planar --state -
 expect 3 "face 0 has 4 corners" grid.obj -o new.obj --planar --subdivide 1,loop
 expect 3 "more than a mesh can have" grid.obj -o new.obj --planar --subdivide 14
 expect 2 "a weight is written --planar=2" grid.obj -o new.obj --planar 2
@@ -163,6 +163,10 @@ expect 2 "--report writes to a file" grid.obj -o new.obj --planar --report=-
 expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1
 expect 2 "add --planar" grid.obj -o new.obj --gauss 0.1 --fairness 0.1 --fix boundary
 expect 2 "there is no folder" grid.obj -o nowhere/new.obj --planar
+long=$(printf 'a%.0s' {1..300}).obj
+expect 2 "cannot be written: File name too long" grid.obj -o "$long" --planar
+cp grid.obj program.obj && chmod +x program.obj # which its user may enter, were it a folder
+expect 2 "cannot be written: Not a directory" grid.obj -o program.obj/new.obj --planar
 expect 2 "needs a path" grid.obj -o new.obj --planar --report=
 expect 2 "--view is for a picture" grid.obj -o new.obj --planar --view top
 expect 2 "--colour is for a picture" grid.obj -o new.obj --planar --colour area
@@ -193,6 +197,9 @@ expect 2 "--fix cornrs: there is no such file; expected boundary, corners" grid.
 expect 2 "did you mean corners?" grid.obj -o new.obj --equilibrium --supports cornesr
 expect 2 "did you mean boundary?" grid.obj -o new.obj --planar --glide boundray
 expect 2 "--glide edge: there is no such file; expected boundary, or an OBJ file" grid.obj -o new.obj --planar --glide edge
+expect 2 "--reference Input: there is no such file; expected input, or the file of a mesh" grid.obj -o new.obj --planar --reference Input
+expect 3 "--reference big.obj=1e60: there is no such file" grid.obj -o new.obj --planar --reference big.obj=1e60
+expect 2 "--weld is for an input" --fill grid.obj --weld -o new.obj
 expect 2 "--planar=1e60: the weight must be a number from 0 to 1e50" grid.obj -o new.obj --planar=1e60
 expect 2 "--fairness 1e60: expected W" grid.obj -o new.obj --planar --fairness 1e60
 for weighted in '--fix boundary=1e60' '--glide boundary=1e60' '--move 0,0,0,0=1e60' '--edge-length 0.5,2=1e60'; do
@@ -275,6 +282,8 @@ head -c 300 /dev/urandom | tr -d '\000' | refuse noise.stl
 grep -q "noise.stl: byte 80: " err.txt && pass || fail "no STL: $(cat err.txt)"
 printf 'abc\0\0' | refuse model.3dm
 grep -q "a .3dm file, and only OBJ, OFF, STL and PLY are read" err.txt && pass || fail "an ending: $(cat err.txt)"
+cp bad-range.obj v # a name that the sentence has in it
+expect 3 "guidedproj: v: " v -o old.obj --planar
 expect 3 "missing.obj" missing.obj -o old.obj --planar
 expect 3 "missing.obj" grid.obj -o old.obj --planar --reference missing.obj=0.1
 expect 3 "missing.obj" grid.obj -o old.obj --planar --glide missing.obj
@@ -589,6 +598,24 @@ expect 3 "before one.txt was changed;" grid.obj -o new.obj --planar --fix one.tx
 run grid.obj -o part.obj --planar --move 40,0,0,9 --time-limit 1e-9
 awk '/^v / && ++n == 41 { exit !($4 < 5) }' part.obj && pass || fail "--time-limit does not end the drag of --move"
 
+# In a problem file, too, all but outputs, limits and threads is what was, wherever it stands; a solve in parts is one attempt.
+printf '{"input": "grid.obj", "planar": true, "iterations": 2, "coplanar": [{"vertices": [0, 8, 72]}]}' >state.json
+run --problem state.json -o part.obj --state problem.state
+[ $status -eq 1 ] && pass || fail "a part of a problem exits with $status"
+printf '{\n"coplanar": [ {"vertices": [0, 8, 72]} ],\n"iterations": 99, "report": "part.json", "input": "grid.obj"}' >state.json
+run --problem state.json -o part.obj --planar --state problem.state
+[ $status -eq 0 ] && pass || fail "other limits in a problem file with --state: exits with $status, $(head -n 1 err.txt)"
+printf '{"input": "grid.obj", "planar": true, "coplanar": [{"vertices": [0, 8, 73]}]}' >state.json
+expect 3 "before state.json was changed;" --problem state.json -o new.obj --state problem.state
+run twisted.obj -o whole2.obj --planar --circular --fix boundary --report whole.json
+run twisted.obj -o part.obj --planar --circular --fix boundary --report part.json --state twisted.state
+[ "$(awk '/"attempts"/ { print $2 + 0 }' whole.json)" -gt 1 ] && grep -q '"attempts": 1,' part.json && pass ||
+    fail "attempts with --state: $(grep -h '"attempts"' whole.json part.json | tr '\n' ' ')"
+rm -f twisted.state
+run twisted.obj -o part.obj --planar --circular --fix boundary --iterations 1 --report part.json --state twisted.state
+grep -q '"outcome": "time out"' part.json && "$tool" --help | tr -s ' \n' ' ' | grep -q 'the outcome "time out" in --report' && pass ||
+    fail "--help and the report differ about the outcome of a part: $(grep '"outcome"' part.json)"
+
 # A solve that has ended stays as it is: a further run takes no step, and gives the same verdict, mesh and residuals.
 for part in whole again; do
     run grid.obj -o $part.obj --planar --fairness 0.1 --state ended.state --residuals $part.csv --report $part.json
@@ -612,6 +639,8 @@ rm -f panels.svg part.obj panels.state
 run grid.obj -o part.obj --planar --panels panels.svg --iterations 1 --state panels.state
 [ $status -eq 1 ] && [ -s part.obj ] && [ -s panels.state ] && [ ! -e panels.svg ] && grep -q 'panels.svg is not written: face' err.txt &&
     pass || fail "panels of an unfinished solve: exits with $status, $(head -n 1 err.txt)"
+run grid.obj -o part.obj --planar --panels $'line\nand\e[31m.svg' --iterations 1
+grep -q '^guidedproj: line?and?\[31m.svg is not written: face' err.txt && pass || fail "a name with control characters: $(cat -v err.txt)"
 printf 'old\n' >panels.svg
 run grid.obj -o part.obj --planar --panels panels.svg --iterations 1
 grep -q 'panels.svg is not written, and what is there belongs to an earlier mesh: face' err.txt && pass ||
@@ -638,6 +667,8 @@ run grid.obj -o part.obj --planar --fix marked.txt
 run grid.obj -o part.obj --planar --fix corners --move 40,0,0,9=0
 run grid.obj -o whole.obj --planar --fix corners
 cmp -s part.obj whole.obj && pass || fail "--move with the weight 0 moves something"
+printf '0\r# the second\r8,99\r' >cr.txt # lines end as on old Macs
+expect 3 "there is no vertex 99" grid.obj -o new.obj --planar --fix cr.txt
 printf '# nothing\n' >none.csv
 expect 3 "none.csv, line 1: there are no loads in it" grid.obj -o new.obj --equilibrium --loads none.csv
 expect 3 "loads" grid.obj -o new.obj --equilibrium --fix boundary --density 1e300 --picture new.svg

@@ -215,7 +215,7 @@ static bool fail_memory(tool *t) { return fail(t, EXIT_MEMORY, "out of memory");
 static bool fail_library(tool *t, const char *path, const gproj_error *error) {
     int code = error->code == GPROJ_ERROR_MEMORY ? EXIT_MEMORY : EXIT_REFUSED;
     const char *message = error->message[0] ? error->message : gproj_code_string(error->code);
-    if (!path || strstr(message, path)) return fail(t, code, "%s", message);
+    if (!path) return fail(t, code, "%s", message);
     return fail(t, code, "%s: %s", path, message);
 }
 
@@ -655,7 +655,7 @@ static double skew_of_face(const tool *t, int32_t face) {
     return sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / t->after.mean_edge;
 }
 
-/* The angle between two vectors, in degrees. */
+/* The angle between two unit vectors, in degrees. */
 static double angle_between(const double a[3], const double b[3]) {
     double x = a[1] * b[2] - a[2] * b[1], y = a[2] * b[0] - a[0] * b[2], z = a[0] * b[1] - a[1] * b[0];
     return 57.29577951308232 * atan2(sqrt(x * x + y * y + z * z), a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
@@ -666,10 +666,12 @@ static double bend_of_face(const tool *t, int32_t face) {
     int32_t h = t->mesh->face_halfedge[face], k;
     double a[3], b[3], largest = 0;
     gproj_mesh_face_area_vector(t->mesh, face, a);
+    gprojx_unit(a);
     for (k = 0; k < t->mesh->face_degree[face]; ++k, h = t->mesh->next[h]) {
         int32_t beside = t->mesh->face[t->mesh->twin[h]];
         if (beside < 0) continue;
         gproj_mesh_face_area_vector(t->mesh, beside, b);
+        gprojx_unit(b);
         largest = fmax(largest, angle_between(a, b));
     }
     return largest;
@@ -1444,9 +1446,14 @@ static int32_t add_all_gliding(tool *t, const tool_demand *none) {
 }
 
 static int32_t add_reference(tool *t, const tool_demand *demand) {
+    static const char *const words[] = {"input", NULL};
     bool input = same_word(demand->text, demand->length, "input");
     gproj_error error;
-    if (!input) t->reference_mesh = load(t, demand->text, demand->length, NULL);
+    char *name = input ? NULL : copy_text(t, demand->text, demand->length);
+    if (name && must_exist(t, "--reference", name,
+                           "input, or the file of a mesh, and maybe =W, a weight from 0 to 1e50 or W*DECAY:N", words))
+        t->reference_mesh = load(t, name, demand->length, NULL);
+    free(name);
     if (!input && !t->reference_mesh) return -1;
     t->surface = gproj_surface_create(input ? t->mesh : t->reference_mesh, &t->host, &error);
     if (!t->surface) fail_library(t, demand->text, &error);
@@ -1662,8 +1669,9 @@ static const tool_option options[] = {
     {"state", "FILE",
      "where FILE exists, the work goes on from there: it was written with the same input and options, but for "
      "outputs, --time-limit, --iterations and --threads. At the end the state is written to it. With --time-limit or "
-     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome time_out in "
-     "--report, until it has ended. Then further runs take no step and give the same verdict",
+     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome \"time out\" "
+     "in --report, until it has ended. Then further runs take no step and give the same verdict. Such work is one "
+     "attempt; without --state others may follow one that ends badly",
      set_output, SETS(output[OUTPUT_STATE])},
 
     {"planar", "[=W]", "all faces are planar", set_must, PLACE(planar), HARD, SHAPES, .build = gproj_add_planarity,
@@ -1708,8 +1716,8 @@ static const tool_option options[] = {
      "file with polylines (else its boundary loops are taken)",
      add_glide, 0, HARD, SIZES, .add = add_all_gliding, .repeatable = true},
     {"move", "I,X,Y,Z[=W]",
-     "vertex I goes to X,Y,Z: it is dragged there, while what must hold goes on holding, and stays. It is then free of "
-     "--fix and --glide",
+     "vertex I goes to X,Y,Z: it is dragged there, while what must hold goes on holding (pulled, with --equilibrium or "
+     "--plain), and stays. It is then free of --fix and --glide",
      add_move, 0, HARD, SIZES, .add = add_moves, .repeatable = true},
 
     {"equilibrium", "[=W]", "forces in the edges balance the loads at all vertices without support (z is up)", set_must,
@@ -2039,14 +2047,38 @@ static bool check_needs(tool *t) {
     return true;
 }
 
-/* Refuses names that do not end like a mesh file. */
-static bool check_mesh_output(tool *t, const gprojx_output *output) {
-    const char *path = output->path;
-    if (!path || gprojx_has_ending(path, ".obj") || gprojx_has_ending(path, ".off") || gprojx_has_ending(path, ".ply"))
-        return true;
-    if (!gprojx_has_ending(path, ".stl"))
-        return fail(t, EXIT_USAGE, "the output '%s' must end in .obj, .off, .stl or .ply", path);
-    return t->encoding != GPROJX_BIG || fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
+/* Refuses the name of an output that does not end like its formats, or is none of a file. */
+static bool check_output(tool *t, int output, const char *option) {
+    static const struct {
+        const char *what, *endings; /* each of 4 letters; NULL: any */
+    } rules[OUTPUT_COUNT] = {[OUTPUT_MESH] = {"output", ".obj, .off, .stl or .ply"},
+                             [OUTPUT_OFFSET] = {"output", ".obj, .off, .stl or .ply"},
+                             [OUTPUT_SUPPORT] = {"output", ".obj, .off, .stl or .ply"},
+                             [OUTPUT_PICTURE] = {"picture", ".svg"},
+                             [OUTPUT_PANELS] = {"panels", ".svg or .dxf"},
+                             [OUTPUT_PANEL_LIST] = {"list of panels", ".csv"}};
+    const char *path = t->output[output].path, *at = rules[output].endings;
+    char ending[5] = "";
+    if (!at) return strcmp(path, "-") != 0 || fail(t, EXIT_USAGE, "--%s writes to a file: give its name", option);
+    for (at = strchr(at, '.'); at; at = strchr(at + 1, '.')) {
+        memcpy(ending, at, 4);
+        if (gprojx_has_ending(path, ending)) break;
+    }
+    if (!at)
+        return fail(t, EXIT_USAGE, "the %s '%s' must end in %s", rules[output].what, path, rules[output].endings);
+    return t->encoding != GPROJX_BIG || strcmp(ending, ".stl") != 0 ||
+           fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
+}
+
+static bool check_outputs(tool *t) {
+    int i, k;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        for (k = 0; k < OUTPUT_COUNT; ++k) {
+            t->line = t->line_of[i];
+            if (t->seen[i] && place_of(t, i) == &t->output[k] && !check_output(t, k, options[i].name)) return false;
+        }
+    t->line = 0;
+    return true;
 }
 
 static bool is_foreign(const tool *t, int output) {
@@ -2098,9 +2130,15 @@ static bool check_written_problem(tool *t) {
     return true;
 }
 
+/* Lets the sentence that follows name the line of the option with this member of the tool. */
+static void blame(tool *t, size_t place) {
+    int i;
+    for (i = 0; i < OPTION_COUNT; ++i)
+        if (options[i].place == place) t->line = t->line_of[i];
+}
+
 static bool check_options(tool *t) {
-    const char *output = t->output[OUTPUT_MESH].path;
-    int32_t usual = t->nearest ? 60 : t->plain ? 20 : 300, i;
+    int32_t usual = t->nearest ? 60 : t->plain ? 20 : 300;
     if (t->output[OUTPUT_STATE].path) { /* the solve has the usual limit, of which this run takes a part */
         t->part = t->iterations;
         t->iterations = t->part > usual ? t->part : usual;
@@ -2108,44 +2146,28 @@ static bool check_options(tool *t) {
     if (t->iterations == 0) t->iterations = usual;
     if (t->fill && t->input)
         return fail(t, EXIT_USAGE, "there are an input, '%s', and --fill %s; one is needed", t->input, t->fill);
+    if (t->fill && t->welds)
+        return blame(t, PLACE(weld)), fail(t, EXIT_USAGE, "--weld is for an input; what --fill makes has no seams");
     if (t->fill) t->input = t->fill;
     if (!t->input) return fail(t, EXIT_USAGE, "no input is given: guidedproj INPUT.obj -o OUTPUT.obj --planar");
-    if (!output) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
-    if (!check_mesh_output(t, &t->output[OUTPUT_MESH])) return false;
+    if (!t->output[OUTPUT_MESH].path) return fail(t, EXIT_USAGE, "no output is given: add -o OUTPUT.obj");
     if (!anything_asked(t))
         return fail(t, EXIT_USAGE,
                     "nothing is asked for: add what must hold (such as --planar) or what is wished (such as "
                     "--fairness 0.2)");
-    if (!check_needs(t) || !check_sections(t) || !check_written_problem(t)) return false;
-    if (t->output[OUTPUT_PICTURE].path && !gprojx_has_ending(t->output[OUTPUT_PICTURE].path, ".svg"))
-        return fail(t, EXIT_USAGE, "the picture '%s' must end in .svg", t->output[OUTPUT_PICTURE].path);
-    if (t->output[OUTPUT_REPORT].path && strcmp(t->output[OUTPUT_REPORT].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--report writes to a file: give its name");
-    if (t->output[OUTPUT_FORCES].path && strcmp(t->output[OUTPUT_FORCES].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--forces writes to a file: give its name");
-    if (t->output[OUTPUT_RESIDUALS].path && strcmp(t->output[OUTPUT_RESIDUALS].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--residuals writes to a file: give its name");
-    if (t->output[OUTPUT_PROBLEM].path && strcmp(t->output[OUTPUT_PROBLEM].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--write-problem writes to a file: give its name");
-    if (t->output[OUTPUT_STATE].path && strcmp(t->output[OUTPUT_STATE].path, "-") == 0)
-        return fail(t, EXIT_USAGE, "--state is a file: give its name");
-    output = t->output[OUTPUT_PANELS].path;
-    if (output && !gprojx_has_ending(output, ".svg") && !gprojx_has_ending(output, ".dxf"))
-        return fail(t, EXIT_USAGE, "the panels '%s' must end in .svg or .dxf", output);
-    output = t->output[OUTPUT_PANEL_LIST].path;
-    if (output && !gprojx_has_ending(output, ".csv"))
-        return fail(t, EXIT_USAGE, "the list of panels '%s' must end in .csv", output);
-    for (i = OUTPUT_OFFSET; i <= OUTPUT_SUPPORT; ++i)
-        if (!check_mesh_output(t, &t->output[i])) return false;
+    if (!check_needs(t) || !check_sections(t) || !check_written_problem(t) || !check_outputs(t)) return false;
     if (is_given(t, PLACE(encoding)) && !is_foreign(t, OUTPUT_MESH) && !is_foreign(t, OUTPUT_OFFSET) &&
         !is_foreign(t, OUTPUT_SUPPORT))
-        return fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
+        return blame(t, PLACE(encoding)), fail(t, EXIT_USAGE, "--encoding is for outputs that end in .stl or .ply");
     if (t->conical.weight > 0 && !(t->planar.weight > 0))
-        return fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
+        return blame(t, PLACE(conical)),
+               fail(t, EXIT_USAGE, "--conical needs the normals of planar faces: add --planar");
     if (t->circular.weight > 0 && !(t->planar.weight > 0))
-        return fail(t, EXIT_USAGE, "--circular is for planar faces, others would only be on spheres: add --planar");
+        return blame(t, PLACE(circular)),
+               fail(t, EXIT_USAGE, "--circular is for planar faces, others would only be on spheres: add --planar");
     if (t->nearest && t->closeness.given && t->closeness.weight <= 0 && !anything_wished(t))
-        return fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
+        return blame(t, PLACE(closeness)),
+               fail(t, EXIT_USAGE, "--nearest has nothing to be near to: leave out --closeness 0, or wish something");
     return true;
 }
 
@@ -2158,8 +2180,11 @@ static bool give_value(tool *t, int row, const gprojx_value *v) {
     t->line = v->line;
     if (v->kind == GPROJX_JSON_LITERAL && v->text[0] == 't' && without) return give(t, row, NULL);
     if ((v->kind == GPROJX_JSON_STRING || v->kind == GPROJX_JSON_NUMBER) && syntax[0]) return give(t, row, v->text);
-    return fail(t, EXIT_REFUSED, "\"%s\": expected %s%s%s%s", options[row].name, without ? "true" : "",
-                without && syntax[0] ? ", or " : "", syntax[0] ? "a string or number " : "", syntax);
+    if (syntax[0] == '[') /* [=W] */
+        return fail(t, EXIT_REFUSED, "\"%s\": expected true, or a string or number %.*s", options[row].name,
+                    (int)strlen(syntax) - 3, syntax + 2);
+    return fail(t, EXIT_REFUSED, "\"%s\": expected %s%s", options[row].name, without ? "true" : "a string or number ",
+                syntax);
 }
 
 /* Reads a key that is an option's name; the command line takes the place of it. */
@@ -2227,20 +2252,44 @@ static bool read_problem_key(tool *t, const gprojx_value *v) {
                 similar < 0 ? "" : options[similar].name, similar < 0 ? "" : "\"?");
 }
 
+static void write_sections(const tool *t, gprojx_json *j) {
+    int i;
+    for (i = 0; i < GPROJX_SECTION_COUNT; ++i) {
+        const gprojx_value *section = problem_section(t, gprojx_sections[i].key);
+        if (section) gprojx_problem_write_value(j, &t->problem, section);
+    }
+}
+
+/* Notes the sections of the problem, on which the solve depends, wherever they stand in the file. */
+static bool ask_sections(tool *t) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *file = open_memstream(&text, &size);
+    gprojx_json j = {file, 0, false, false};
+    bool good;
+    if (!file) return fail_memory(t);
+    write_sections(t, &j);
+    good = !ferror(file);
+    good = fclose(file) == 0 && good;
+    good = good && (size == 0 || gprojx_asked_add_file(&t->asked, t->problem_path, text, size));
+    free(text);
+    return good || fail_memory(t);
+}
+
 /* Reads the file of --problem. room: words that the command line has at most. */
 static bool read_problem(tool *t, size_t room) {
     const gprojx_value *v;
     gproj_error error;
     size_t length;
-    char *text = load_file(t, t->problem_path, gprojx_any_text, &length);
-    if (!text) return false;
+    char *text = gprojx_load_file(t->problem_path, gprojx_any_text, t->file_limit, &length, &error);
+    if (!text) return fail_file(t, t->problem_path, &error);
     t->problem.host = &t->host, t->problem.load = load_for_problem, t->problem.user = t;
     if (!gprojx_problem_parse(&t->problem, text, length, &error)) return fail_problem(t, &error);
     if (!grow_words(t, room)) return false;
     for (v = gprojx_inside(t->problem.value); v; v = gprojx_after(&t->problem, v))
         if (!read_problem_key(t, v)) return false;
     t->line = 0;
-    return true;
+    return ask_sections(t);
 }
 
 /* Writes the words of an option as the value of its key. */
@@ -2265,10 +2314,7 @@ static gproj_code write_problem(tool *t, FILE *file) {
     if (!t->fill) gprojx_json_string(&j, "input", t->input);
     for (i = 0; i < OPTION_COUNT; ++i)
         if (t->seen[i] && !is_for_command_line(i)) write_key(t, &j, i);
-    for (i = 0; i < GPROJX_SECTION_COUNT; ++i) {
-        const gprojx_value *section = problem_section(t, gprojx_sections[i].key);
-        if (section) gprojx_problem_write_value(&j, &t->problem, section);
-    }
+    write_sections(t, &j);
     gprojx_json_close(&j, '}');
     fputc('\n', file);
     return ferror(file) ? GPROJ_ERROR_FILE : GPROJ_OK;
@@ -2770,7 +2816,9 @@ static bool make_panels(tool *t) {
     if (!path) return true;
     t->panels = gprojx_panels_create(t->mesh, t->support, &t->sheet, &error);
     if (t->panels || is_exact(t) || error.code == GPROJ_ERROR_MEMORY) return t->panels || fail_library(t, path, &error);
-    fprintf(stderr, "guidedproj: %s is not written%s: %s\n", path,
+    fputs("guidedproj: ", stderr);
+    gprojx_print_plain(stderr, path);
+    fprintf(stderr, " is not written%s: %s\n",
             access(t->output[OUTPUT_PANELS].target, F_OK) == 0 ? ", and what is there belongs to an earlier mesh" : "",
             error.message);
     t->output[OUTPUT_PANELS].path = t->output[OUTPUT_PANEL_LIST].path = NULL;

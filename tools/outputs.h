@@ -89,8 +89,11 @@ static bool gprojx_output_resolve(gprojx_output *output, gproj_error *error) {
     const char *slash = strrchr(output->path, '/'), *name = slash ? slash + 1 : output->path;
     struct stat info;
     char *folder, *real;
+    errno = 0;
     if (lstat(output->path, &info) == 0 && S_ISLNK(info.st_mode))
         return gprojx_refuse(error, GPROJ_ERROR_FILE, "is a symbolic link that leads nowhere: remove it, or mend it");
+    if (errno != 0 && errno != ENOENT) /* a name that is too long, or a file where the path has a folder */
+        return gprojx_refuse(error, GPROJ_ERROR_FILE, "cannot be written: %s", strerror(errno));
     folder = gprojx_folder_of(output->path);
     if (!folder) return gprojx_refuse(error, GPROJ_ERROR_MEMORY, "out of memory");
     real = realpath(folder, NULL);

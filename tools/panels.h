@@ -53,6 +53,13 @@ static const gproj_mesh *gprojx_mesh_of(const gprojx_panels *p, const gprojx_pan
     return panel->strip ? p->support : p->mesh;
 }
 
+/* Makes a unit vector of one of any size, so that products neither overflow nor vanish; 0 stays 0. */
+static void gprojx_unit(double v[3]) {
+    double size = hypot(hypot(v[0], v[1]), v[2]);
+    int k;
+    for (k = 0; size > 0 && k < 3; ++k) v[k] /= size;
+}
+
 static double gprojx_far2(const double a[2], const double b[2]) { return hypot(b[0] - a[0], b[1] - a[1]); }
 
 /* ---- one panel in its plane ---- */
@@ -64,7 +71,7 @@ static double gprojx_flatten(const gproj_mesh *mesh, int32_t face, double scale,
     const double *start = mesh->position + 3 * (size_t)mesh->origin[first];
     double n[3], x[3] = {0, 0, 0}, y[3], longest = 0, half = 0, size, low = 0, high = 0;
     gproj_mesh_face_area_vector(mesh, face, n);
-    size = sqrt(gprojx_dot(n, n));
+    size = hypot(hypot(n[0], n[1]), n[2]);
     for (k = 0, h = first; k < degree; ++k, h = mesh->next[h]) {
         double side[3], length;
         gprojx_side(mesh, h, side);
@@ -418,8 +425,9 @@ static double gprojx_dihedral(const gproj_mesh *mesh, int32_t h) {
     gproj_mesh_face_area_vector(mesh, mesh->face[h], a);
     gproj_mesh_face_area_vector(mesh, mesh->face[mesh->twin[h]], b);
     gprojx_side(mesh, h, side);
+    gprojx_unit(a), gprojx_unit(b), gprojx_unit(side);
     gprojx_cross(a, b, c);
-    sine = gprojx_dot(c, side) / sqrt(gprojx_dot(side, side)), cosine = gprojx_dot(a, b);
+    sine = gprojx_dot(c, side), cosine = gprojx_dot(a, b);
     return 180 - 57.29577951308232 * atan2(sine, cosine);
 }
 

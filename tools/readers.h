@@ -75,7 +75,7 @@ static bool gprojx_mark_list(const char *text, int32_t vertex_count, bool *mark,
     char line[32];
     for (;;) {
         int32_t range[2], k;
-        while (*at == ',' || *at == '#' || isspace((unsigned char)*at)) at += *at == '#' ? strcspn(at, "\n") : 1;
+        while (*at == ',' || *at == '#' || isspace((unsigned char)*at)) at += *at == '#' ? strcspn(at, "\r\n") : 1;
         if (!*at) return true;
         for (k = 0; k < 2; ++k) {
             size_t size = strspn(at, "0123456789");
