@@ -5440,26 +5440,30 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     int32_t *first = an->a;    /* first position in the subtree under each position */
     int32_t *last = an->b;     /* by row: the leaf met last, or -1 */
     int32_t *ancestor = an->c; /* union-find: finished positions lead to the root above them */
+    /* Results fit int32_t, but the sum of what branches subtract may not: unsigned numbers wrap around and back. */
+    uint32_t *count = (uint32_t *)an->count, *rows = (uint32_t *)an->rows;
     int64_t e;
-    for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, an->count[k] = an->rows[k] = 0;
+    for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, count[k] = rows[k] = 0;
     for (k = 0; k < n; ++k) {
         int32_t i;
-        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* row k has no other node */
+        if (first[k] < 0) count[k] = (uint32_t)graph->weight[order[k]], rows[k] = 1; /* row k has no other node */
         for (i = k; i >= 0 && first[i] < 0; i = an->parent[i]) first[i] = k;
     }
     for (k = 0; k < n; ++k) {
-        int32_t own = graph->weight[order[k]], up = an->parent[k];
-        if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
+        uint32_t own = (uint32_t)graph->weight[order[k]];
+        int32_t up = an->parent[k];
+        if (up >= 0) count[up] -= own, rows[up] -= 1;
         gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            int32_t i = position[graph->adjacent[e]], weight, meet, at, next;
+            int32_t i = position[graph->adjacent[e]], meet, at, next;
+            uint32_t weight;
             if (i <= k || first[k] <= last[i]) continue; /* k is no leaf in the subtree of row i */
-            weight = graph->weight[order[i]];
-            an->count[k] += weight, an->rows[k] += 1;
+            weight = (uint32_t)graph->weight[order[i]];
+            count[k] += weight, rows[k] += 1;
             if (last[i] >= 0) { /* the branches of two leaves meet at their lowest common ancestor */
                 for (meet = last[i]; ancestor[meet] != meet;) meet = ancestor[meet];
                 for (at = last[i]; ancestor[at] != meet; at = next) next = ancestor[at], ancestor[at] = meet;
-                an->count[meet] -= weight, an->rows[meet] -= 1;
+                count[meet] -= weight, rows[meet] -= 1;
             }
             last[i] = k;
         }
@@ -5467,7 +5471,7 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     }
     for (k = 0; k < n; ++k) {
         int32_t up = an->parent[k];
-        if (up >= 0) an->count[up] += an->count[k], an->rows[up] += an->rows[k];
+        if (up >= 0) count[up] += count[k], rows[up] += rows[k];
     }
 }
 
