@@ -5718,6 +5718,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
     int32_t f, i, *mark = an->a, *parent = an->b; /* parent: a copy, dense in the cache */
+    int32_t *at = an->c;                          /* by position: padded row in one front */
     int64_t total = 0, e, r, *end;                /* end: where each front's next row goes */
     end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
     if (!end) return false;
@@ -5747,23 +5748,22 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     /* 2. Padded rows in the front's own panel, under the pivots. */
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *front = &out->front[f];
-        int32_t at = front->width + gproji_panel_shift(front->width);
+        int32_t row = front->width + gproji_panel_shift(front->width);
         GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
         for (r = front->rows; r < end[f]; ++r) {
-            out->row_at[r] = at;
-            at += graph->weight[out->order[out->row_node[r]]];
+            out->row_at[r] = row;
+            row += graph->weight[out->order[out->row_node[r]]];
         }
     }
-    /* 3. Padded rows in the parent: pivots come first, then rows; these are found by merging two sorted lists. */
+    /* 3. Padded rows in the parent, whose pivots and rows are mapped once for all children. */
     for (f = 0; f < out->fronts; ++f) {
-        const gproji_front *up = parent[f] < 0 ? NULL : &out->front[parent[f]];
-        int64_t q = up ? up->rows : 0;
-        for (r = out->front[f].rows; up && r < end[f]; ++r) {
-            i = out->row_node[r];
-            while (i >= up->end_position && out->row_node[q] != i) ++q;
-            out->relative[r] =
-                i < up->end_position ? out->column[i] - up->first + gproji_panel_shift(up->width) : out->row_at[q];
-        }
+        const gproji_front *front = &out->front[f];
+        int32_t shift = gproji_panel_shift(front->width) - front->first, child = front->child;
+        if (child < 0) continue;
+        for (i = front->first_position; i < front->end_position; ++i) at[i] = out->column[i] + shift;
+        for (r = front->rows; r < end[f]; ++r) at[out->row_node[r]] = out->row_at[r];
+        for (; child >= 0; child = out->front[child].sibling)
+            for (r = out->front[child].rows; r < end[child]; ++r) out->relative[r] = at[out->row_node[r]];
     }
     return true;
 }
