@@ -452,7 +452,7 @@ typedef enum gproj_ordering {
 typedef struct gproj_cholesky_options {
     gproj_ordering ordering;
     const int32_t *permutation; /* n entries: permutation[k] = column of A that becomes column k of L */
-    bool disable_relaxation;    /* keep fundamental supernodes: less fill, slower */
+    bool disable_relaxation;    /* keep exact supernodes: less fill, slower */
     bool disable_postorder;     /* keep the given order exactly; supernodes become small */
 } gproj_cholesky_options;
 
@@ -5199,7 +5199,7 @@ GPROJI_INTERNAL void gproji_nd_cut_part(gproji_nd *nd, const gproji_nd_part *par
         cut = none;
     }
     reached = gproji_nd_find_cut(nd, &cut);
-    /* 2. Not connected: some components against the others, up to half of the nodes, but at least one on each side. */
+    /* 2. Not connected: components until they have half of the nodes, against the others; at least one on each side. */
     if (reached < nd->nodes) {
         for (before = reached; reached < nd->nodes - reached;) {
             while (nd->distance[0][root] >= 0) ++root;
@@ -5270,7 +5270,8 @@ GPROJI_INTERNAL void gproji_nd_next(gproji_nd *nd) {
         gproji_nd_cut_part(nd, &part);
 }
 
-/* Finds the order (the node that is eliminated k-th). total: the weight of all nodes, < 2^29. False: no memory. */
+/* Finds the order (the node that is eliminated k-th). total: the weight of all nodes. At most
+   GPROJI_DISSECT_MOST nodes. False: no memory. */
 GPROJI_INTERNAL bool gproji_dissect(gproji_heap *heap, const gproji_graph *graph, int32_t total, int32_t *order) {
     int32_t a, b, k, count = 0;
     int64_t e;
@@ -5338,7 +5339,7 @@ typedef struct gproji_front {
 enum {
     GPROJI_TASK_LEVELS = 2,                    /* within one level, tasks are independent */
     GPROJI_NODES_AHEAD = 8,                    /* see gproji_expect_neighbours */
-    GPROJI_FAMILY_TRIES = 64,                  /* gaps that are tried before the end of the memory is taken */
+    GPROJI_FAMILY_TRIES = 64,                  /* gaps that are tried before a family goes beyond all others */
     GPROJI_DISSECT_FLOPS = 35000,              /* per node; see gproji_better_order */
     GPROJI_DISSECT_FORECAST = 1200,            /* per node; likewise */
     GPROJI_DISSECT_LEAST = 600,                /* nodes; smaller graphs get no forecast */
@@ -5360,7 +5361,7 @@ typedef struct gproji_symbolic {
     int32_t *row_at;                             /* for each row node: first padded row in the front's panel, */
     int32_t *relative;                           /* and in the parent's panel */
     int32_t *schedule;                           /* fronts: those of task 0 in order, of task 1, ..., of the top */
-    int32_t *task_start;                         /* tasks + 2: where each task begins in `schedule` */
+    int32_t *task_start;                         /* tasks + 2 (and one for sorting): where each begins in `schedule` */
     int64_t values_size;                         /* doubles for all panels, */
     int64_t work_size;                           /* and for update matrices that do not fit in between */
     int64_t side_size;                           /* sum over all fronts' `below` */
@@ -5440,26 +5441,30 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     int32_t *first = an->a;    /* first position in the subtree under each position */
     int32_t *last = an->b;     /* by row: the leaf met last, or -1 */
     int32_t *ancestor = an->c; /* union-find: finished positions lead to the root above them */
+    /* Results fit int32_t, but the sum of what branches subtract may not: unsigned numbers wrap around and back. */
+    uint32_t *count = (uint32_t *)an->count, *rows = (uint32_t *)an->rows;
     int64_t e;
-    for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, an->count[k] = an->rows[k] = 0;
+    for (k = 0; k < n; ++k) first[k] = last[k] = -1, ancestor[k] = k, count[k] = rows[k] = 0;
     for (k = 0; k < n; ++k) {
         int32_t i;
-        if (first[k] < 0) an->count[k] = graph->weight[order[k]], an->rows[k] = 1; /* row k has no other node */
+        if (first[k] < 0) count[k] = (uint32_t)graph->weight[order[k]], rows[k] = 1; /* row k has no other node */
         for (i = k; i >= 0 && first[i] < 0; i = an->parent[i]) first[i] = k;
     }
     for (k = 0; k < n; ++k) {
-        int32_t own = graph->weight[order[k]], up = an->parent[k];
-        if (up >= 0) an->count[up] -= own, an->rows[up] -= 1;
+        uint32_t own = (uint32_t)graph->weight[order[k]];
+        int32_t up = an->parent[k];
+        if (up >= 0) count[up] -= own, rows[up] -= 1;
         gproji_expect_neighbours(graph, order, k);
         for (e = graph->start[order[k]]; e < graph->start[order[k] + 1]; ++e) {
-            int32_t i = position[graph->adjacent[e]], weight, meet, at, next;
+            int32_t i = position[graph->adjacent[e]], meet, at, next;
+            uint32_t weight;
             if (i <= k || first[k] <= last[i]) continue; /* k is no leaf in the subtree of row i */
-            weight = graph->weight[order[i]];
-            an->count[k] += weight, an->rows[k] += 1;
+            weight = (uint32_t)graph->weight[order[i]];
+            count[k] += weight, rows[k] += 1;
             if (last[i] >= 0) { /* the branches of two leaves meet at their lowest common ancestor */
                 for (meet = last[i]; ancestor[meet] != meet;) meet = ancestor[meet];
                 for (at = last[i]; ancestor[at] != meet; at = next) next = ancestor[at], ancestor[at] = meet;
-                an->count[meet] -= weight, an->rows[meet] -= 1;
+                count[meet] -= weight, rows[meet] -= 1;
             }
             last[i] = k;
         }
@@ -5467,7 +5472,7 @@ GPROJI_INTERNAL void gproji_column_counts(gproji_analysis *an) {
     }
     for (k = 0; k < n; ++k) {
         int32_t up = an->parent[k];
-        if (up >= 0) an->count[up] += an->count[k], an->rows[up] += an->rows[k];
+        if (up >= 0) count[up] += count[k], rows[up] += rows[k];
     }
 }
 
@@ -5598,7 +5603,8 @@ GPROJI_INTERNAL double gproji_front_cost(double width, double below) {
 /* Finds supernodes: chains of positions that are eliminated together. relax: may zeros enter the factor? */
 GPROJI_INTERNAL void gproji_find_supernodes(gproji_analysis *an, bool relax) {
     int32_t n = an->graph->nodes, k, p, s = -1, *super_of = an->a;
-    /* 1. Fundamental supernodes: chains k, k + 1, ... whose columns share the rows below. */
+    /* 1. Exact supernodes: chains k, k + 1, ... whose columns share the rows below; unlike in fundamental ones
+       k + 1 may have other children. */
     for (k = 0; k < n; ++k) {
         int32_t weight = an->graph->weight[an->out->order[k]];
         an->chain[k] = -1;
@@ -5659,9 +5665,10 @@ GPROJI_INTERNAL bool gproji_make_fronts(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     int32_t n = out->nodes, count = an->supernodes, k, f, at = 0, column = 0;
     int32_t *sequence = an->a, *number = an->b, *order = an->c;
-    gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     if (an->keep_order)
         for (k = 0; k < count; ++k) sequence[k] = k;
+    else
+        gproji_postorder(count, an->super_parent, an->child, an->sibling, sequence);
     for (k = 0; k < count; ++k) {
         int32_t s = sequence[k];
         if (an->width[s] == 0) continue;
@@ -5714,6 +5721,7 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     gproji_symbolic *out = an->out;
     const gproji_graph *graph = an->graph;
     int32_t f, i, *mark = an->a, *parent = an->b; /* parent: a copy, dense in the cache */
+    int32_t *at = an->c;                          /* by position: padded row in one front */
     int64_t total = 0, e, r, *end;                /* end: where each front's next row goes */
     end = (int64_t *)gproji_pool_take(&an->pool, out->fronts, sizeof(int64_t));
     if (!end) return false;
@@ -5743,23 +5751,22 @@ GPROJI_INTERNAL bool gproji_find_rows(gproji_analysis *an) {
     /* 2. Padded rows in the front's own panel, under the pivots. */
     for (f = 0; f < out->fronts; ++f) {
         const gproji_front *front = &out->front[f];
-        int32_t at = front->width + gproji_panel_shift(front->width);
+        int32_t row = front->width + gproji_panel_shift(front->width);
         GPROJ_ASSERT(end[f] == front->rows + front->row_nodes);
         for (r = front->rows; r < end[f]; ++r) {
-            out->row_at[r] = at;
-            at += graph->weight[out->order[out->row_node[r]]];
+            out->row_at[r] = row;
+            row += graph->weight[out->order[out->row_node[r]]];
         }
     }
-    /* 3. Padded rows in the parent: pivots come first, then rows; these are found by merging two sorted lists. */
+    /* 3. Padded rows in the parent, whose pivots and rows are mapped once for all children. */
     for (f = 0; f < out->fronts; ++f) {
-        const gproji_front *up = parent[f] < 0 ? NULL : &out->front[parent[f]];
-        int64_t q = up ? up->rows : 0;
-        for (r = out->front[f].rows; up && r < end[f]; ++r) {
-            i = out->row_node[r];
-            while (i >= up->end_position && out->row_node[q] != i) ++q;
-            out->relative[r] =
-                i < up->end_position ? out->column[i] - up->first + gproji_panel_shift(up->width) : out->row_at[q];
-        }
+        const gproji_front *front = &out->front[f];
+        int32_t shift = gproji_panel_shift(front->width) - front->first, child = front->child;
+        if (child < 0) continue;
+        for (i = front->first_position; i < front->end_position; ++i) at[i] = out->column[i] + shift;
+        for (r = front->rows; r < end[f]; ++r) at[out->row_node[r]] = out->row_at[r];
+        for (; child >= 0; child = out->front[child].sibling)
+            for (r = out->front[child].rows; r < end[child]; ++r) out->relative[r] = at[out->row_node[r]];
     }
     return true;
 }
@@ -5808,7 +5815,7 @@ GPROJI_INTERNAL int64_t gproji_place_fronts(gproji_symbolic *out, int32_t begin,
         }
         /* As scheduled: backwards in time the last child goes first. */
         for (level = 0; level <= GPROJI_TASK_LEVELS; ++level)
-            for (c = size > 0 ? out->front[f].child : -1; c >= 0; c = out->front[c].sibling)
+            for (c = out->front[f].child; c >= 0; c = out->front[c].sibling)
                 if (task[c] >= out->level_start[level] && task[c] < out->level_start[level + 1])
                     out->front[c].update = family[f].high += gproji_update_entries(out->front[c].update_rows);
         if (at + family[f].high > most) most = at + family[f].high;
@@ -5969,7 +5976,7 @@ typedef struct gproji_entries {
     int64_t count;
     int64_t *number;      /* count: index in the caller's arrays */
     int64_t *target;      /* count: offset in L */
-    int64_t *start;       /* fronts + 1: start of each front's entries */
+    int64_t *start;       /* fronts + 1 (and one for sorting): start of each front's entries */
     const double *values; /* A's, during gproj_cholesky_factor */
 } gproji_entries;
 
@@ -6087,8 +6094,8 @@ GPROJI_INTERNAL bool gproji_cholesky_analyse_graph(gproj_cholesky *c, const gpro
     int64_t most = 0, *start;
     int32_t f, k, i, at = 0;
     if (!gproji_analyse(&c->kept, graph, columns, options, c->parallel.run != NULL, &c->symbolic)) return false;
-    for (f = 0; f < sy->fronts; ++f) /* a bound; the block shrinks once their number is known */
-        most += 2 * sy->front[f].row_nodes + sy->front[f].below / GPROJI_BLOCK + 2; /* see gproji_find_pieces */
+    for (f = 0; f < sy->fronts; ++f) /* a bound, see gproji_find_pieces; the block shrinks once their number is known */
+        most += 2 * (int64_t)sy->front[f].row_nodes + sy->front[f].below / GPROJI_BLOCK + 2;
     c->permutation = gproji_take_ints(&c->kept, sy->columns);
     c->piece_start = start = (int64_t *)gproji_pool_take(&c->kept, (int64_t)sy->fronts + 1, sizeof(int64_t));
     c->piece = (gproji_piece *)gproji_pool_take(&c->kept, most, sizeof *c->piece);
@@ -6524,7 +6531,7 @@ GPROJI_INTERNAL void gproji_upward_task(void *data, int32_t index) {
     const int32_t *level = sy->level_start + c->sweep.level;
     int32_t task = level[0] + index, k, end = sy->task_start[task + 1], first, side, failed = -1;
     double *rows_of[2]; /* of the two right-hand sides */
-    /* A level with one task lends it all threads; else each has a task. */
+    /* A level with one task lends it all threads, but for the first, which has one in small problems only. */
     const gproj_parallel *parallel = c->sweep.level > 0 && level[1] - level[0] == 1 ? &c->parallel : NULL;
     rows_of[0] = c->rows + 2 * (size_t)task * (size_t)sy->most_rows, rows_of[1] = rows_of[0] + sy->most_rows;
     for (k = sy->task_start[task]; k < end; ++k) {
@@ -6589,7 +6596,8 @@ GPROJI_INTERNAL void gproji_backward_task(void *data, int32_t index) {
 }
 
 /* Sweeps up all levels: factors the matrix that `load` adds to the fronts, if any, and solves L y = b for up to
-   c->batch right-hand sides; c->solution holds y in L's order. Returns the first failing column of L, or -1. */
+   c->batch right-hand sides; c->solution holds y in L's order. Returns -1 or the column of L that failed: the
+   first one on the lowest level with any. */
 GPROJI_INTERNAL int32_t gproji_cholesky_sweep(gproj_cholesky *c, gproji_load load, void *user, int32_t sides,
                                               const double *b) {
     const int32_t *start = c->symbolic.level_start;
@@ -6665,7 +6673,7 @@ GPROJ_API gproj_factor_outcome gproj_cholesky_factor(gproj_cholesky *cholesky, c
 
 GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t count, const double *b, double *x) {
     gproj_cholesky *c = cholesky;
-    int32_t r;
+    int32_t r, sides;
     if (!c) return GPROJ_ERROR_ARGUMENT;
     gproji_error_clear(&c->error);
     if (!c->factored)
@@ -6674,9 +6682,10 @@ GPROJ_API gproj_code gproj_cholesky_solve(gproj_cholesky *cholesky, int32_t coun
     if (count < 0 || (count > 0 && c->symbolic.columns > 0 && (!b || !x)))
         return gproji_refuse(&c->error, "solve: %d right-hand sides, or an array is missing", count);
     if (c->symbolic.columns == 0) return GPROJ_OK;
-    for (r = 0; r < count; r += c->batch) {
+    for (r = 0; r < count; r += sides) {
         size_t offset = (size_t)r * (size_t)c->symbolic.columns;
-        gproji_cholesky_sweep(c, NULL, NULL, gproji_min(count - r, c->batch), b + offset);
+        sides = gproji_min(count - r, c->batch);
+        gproji_cholesky_sweep(c, NULL, NULL, sides, b + offset);
         gproji_cholesky_descend(c, x + offset);
     }
     return GPROJ_OK;

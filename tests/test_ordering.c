@@ -418,6 +418,25 @@ GPROJT_TEST(ordering_of_heavy_hubs) {
     graph_free(&g);
 }
 
+/* Leaves around a heavy node: the sums from which column counts come are beyond 32 bits, the counts are not. */
+GPROJT_TEST(counts_of_heavy_stars) {
+    enum {
+        LEAVES = 1000,
+        HEAVY = 4000000
+    };
+    graph g = graph_of(LEAVES + 1);
+    double w = HEAVY;
+    gproj_cholesky_info a;
+    int32_t k;
+    for (k = 0; k < LEAVES; ++k) graph_edge(&g, k, LEAVES);
+    graph_finish(&g, 1);
+    g.weight[LEAVES] = HEAVY;
+    graph_weigh(&g);
+    a = analysed(&g, GPROJ_ORDERING_NATURAL, NULL);
+    GPROJT_NEAR(a.flops, LEAVES * (w + 1) * (w + 1) + w * (w + 1) * (2 * w + 1) / 6, 1e-12 * a.flops);
+    graph_free(&g);
+}
+
 /* In units of the cube of a side's variables, a grid's factorisation takes about 17, whatever its size (George 1973: 20
    with cuts along the axes), that of a torus, whose first cut needs two lines, less than three times as many. */
 GPROJT_TEST(ordering_of_grids) {
@@ -977,6 +996,7 @@ int main(void) {
     GPROJT_RUN(ordering_of_layers);
     GPROJT_RUN(ordering_of_large_graphs);
     GPROJT_RUN(ordering_of_heavy_hubs);
+    GPROJT_RUN(counts_of_heavy_stars);
     GPROJT_RUN(ordering_of_grids);
     GPROJT_RUN(dissection_separates);
     GPROJT_RUN(dissection_flows);
