@@ -22642,46 +22642,6 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
                 lost[!hung]);
 }
 
-/* Says that a vertex stood outside of the supports as seen from above, if all forces have one sign and loads are
-   weights: there sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so
-   none can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
-GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
-    static const char *const sign[2] = {"compression", "tension"};
-    const gproji_statics *s = form->statics;
-    const gproj_mesh *mesh = form->mesh;
-    int32_t vertex = -1, bounded[2] = {0, 0}, edges = 0, e, v, k; /* bounded: rows of either sign */
-    double most = 1;                                              /* mean edge lengths */
-    const gproji_part *part;
-    if (!s || !gproji_is_on(form, s->group)) return;
-    for (part = form->part; part; part = part->next)
-        if (gproji_is_on(form, part->group) &&
-            (part->rule == &gproji_compression_rule || part->rule == &gproji_tension_rule))
-            bounded[part->rule == &gproji_tension_rule] += gproji_group_at(form->system, part->group)->row_count;
-    for (e = 0; e < mesh->edge_count; ++e) edges += s->force[e] >= 0;
-    if (bounded[0] < edges && bounded[1] < edges) return;
-    for (v = 0; s->loads.point_load && v < mesh->vertex_count; ++v)
-        if (s->loads.point_load[3 * (size_t)v] != 0 || s->loads.point_load[3 * (size_t)v + 1] != 0) return;
-    for (k = 0; k < 32; ++k) {
-        double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k);
-        double supported = -HUGE_VAL, out = -HUGE_VAL;
-        int32_t farthest = -1;
-        for (v = 0; v < mesh->vertex_count; ++v) {
-            bool supports = s->axes[v] != GPROJI_AXES;
-            const double *at = (supports ? gproj_system_values(form->system) : form->original) + 3 * (size_t)v;
-            double here = c * at[0] + d * at[1];
-            if (mesh->vertex_halfedge[v] < 0) continue;
-            if (supports) supported = gproji_fmax(supported, here);
-            if (!supports && here > out) out = here, farthest = v;
-        }
-        if (out - supported > most) most = out - supported, vertex = farthest;
-    }
-    if (vertex >= 0 && most < HUGE_VAL) /* there are supports */
-        gproji_tell(result,
-                    "; %s alone keeps all vertices between the supports as seen from above, but vertex %d was "
-                    "%g mean edges outside: support it, or allow %s",
-                    sign[bounded[0] < edges], vertex, most, sign[bounded[0] >= edges]);
-}
-
 /* -- demands that can never hold -- */
 
 /* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are
@@ -23157,7 +23117,8 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
     return found;
 }
 
-/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
+/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. Marks the
+   forces' variables in the system's step and saved x: 1 for compression only, for tension only. */
 GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
     double *positive = gproji_spare(form->system, 0), *negative = gproji_spare(form->system, 1), sign;
     const int32_t *force = form->statics->force;
@@ -23181,6 +23142,49 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
         }
     }
     return found;
+}
+
+/* Says that a vertex stood outside of the supports as seen from above, if all forces are to have one sign and loads are
+   weights: then sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so none
+   with a load can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
+GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    const double *first = form->original, *x = gproj_system_values(form->system);
+    const double *positive = gproji_spare(form->system, 0), *negative = gproji_spare(form->system, 1);
+    bool pushed = true, pulled = true; /* all forces are bound to it */
+    int32_t vertex = -1, v, e, k;
+    double most = 1; /* mean edge lengths */
+    if (!s || !gproji_is_on(form, s->group) || gproji_find_contradiction(form) >= 0) return;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        if (s->force[e] < 0) continue;
+        pushed = pushed && positive[s->force[e]] > 0;
+        pulled = pulled && negative[s->force[e]] > 0;
+    }
+    gproji_loads_at(mesh, &s->loads, 1, form->scale, first, s->work);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        const double *load = s->work + 3 * (size_t)v;
+        if (load[0] != 0 || load[1] != 0 || load[2] > 0) return;
+    }
+    for (k = 0; (pushed || pulled) && k < 32; ++k) {
+        double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k), supported = -HUGE_VAL, out = -HUGE_VAL;
+        int32_t farthest = -1;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            size_t i = 3 * (size_t)v;
+            double before = c * first[i] + d * first[i + 1], now = c * x[i] + d * x[i + 1];
+            if (mesh->vertex_halfedge[v] < 0) continue;
+            if (s->axes[v] != GPROJI_AXES) /* supports may have moved */
+                supported = gproji_fmax(supported, gproji_fmax(before, now));
+            else if (s->work[i + 2] < 0 && before > out)
+                out = before, farthest = v;
+        }
+        if (out - supported > most) most = out - supported, vertex = farthest;
+    }
+    if (vertex >= 0 && most < HUGE_VAL) /* there are supports */
+        gproji_tell(result,
+                    "; %s alone keeps all vertices between the supports as seen from above, but vertex %d was "
+                    "%g mean edges outside: support it, or allow %s",
+                    pushed ? "compression" : "tension", vertex, most, pushed ? "tension" : "compression");
 }
 
 /* Says which demand excludes equilibrium of any shape, or else which constraint of a vertex holds it back most. */
