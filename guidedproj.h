@@ -23905,7 +23905,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     return result;
 }
 
-/* Refuses a solve, but for the release; that ends where it is, and its result stays. */
+/* Refuses a solve during a drag. A release under way ends where it is, and its result stays. */
 static const char gproji_drag_first[] = "a drag is under way: end or cancel it before the form is solved";
 
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
@@ -23990,7 +23990,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstM", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstN", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -24152,7 +24152,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'M'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'N'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {
