@@ -10589,7 +10589,8 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
 /* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
-    double weight = g->schedule.weight * (gproji_is_fading(loop, g) ? loop->wishes.fading : 1);
+    double weight = g->schedule.weight;
+    if (gproji_is_fading(loop, g)) weight = gproji_fmin(weight * loop->wishes.fading, gproji_weight_most);
     if (g->role == GPROJI_BRAKE)
         return weight * loop->system->stiffness *
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
@@ -11622,7 +11623,8 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, b
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
         if (g->role == GPROJI_GUARD && !tangential) g->weight = 0;
-        if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
+        if (g->kind == GPROJ_WISH && largest > DBL_MIN)
+            g->weight = gproji_fmin(g->weight * (scale / largest), gproji_weight_most);
     }
 }
 
@@ -23145,8 +23147,8 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
 }
 
 /* Says that a vertex stood outside of the supports as seen from above, if all forces are to have one sign and loads are
-   weights: then sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so none
-   with a load can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
+   weights: then sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so
+   none with a load can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
 GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
     const gproji_statics *s = form->statics;
     const gproj_mesh *mesh = form->mesh;
@@ -23439,13 +23441,15 @@ GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
-/* The largest weight of a wish of the caller's, or for the release of a drag; 0: there is none. */
+/* The largest weight of a row, with the group's, in wishes of the caller's or for the release of a drag; 0: there is
+   none. */
 GPROJI_INTERNAL double gproji_largest_wish(const gproj_form *form) {
     double largest = 0;
-    int32_t i;
+    int32_t i, r;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (gproji_is_callers_wish(g) && g->row_count > 0) largest = gproji_fmax(largest, g->schedule.weight);
+        for (r = 0; gproji_is_callers_wish(g) && r < g->row_count; ++r)
+            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
     }
     return largest;
 }
@@ -23700,7 +23704,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
     solve->loop.wishes.last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wishes.last = gproji_min(9, solve->loop.wishes.last);
-    if (beginning->fading && wished > 0) solve->loop.wishes.fading = gproji_nearest_scale / wished;
+    if (beginning->fading && wished > DBL_MIN) solve->loop.wishes.fading = gproji_nearest_scale / wished;
     for (i = 0; beginning->left_out && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         if (g->row_count > 0 && g->schedule.weight > 0 && gproji_is_callers_wish(g) &&
