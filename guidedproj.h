@@ -1666,8 +1666,8 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
 /* Forces and loads as they are, and forces as a start. `error` may be NULL; a refused call changes nothing, and the
-   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers and
-   positions that are not finite, _MEMORY, or the form's error.
+   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers that
+   are not finite and positions that a solve would refuse, _MEMORY, or the form's error.
 
    The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
@@ -1706,8 +1706,8 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`; GPROJ_ERROR_NUMBER: they are
-   beyond all numbers): zeros, residual_vertex -1. */
+/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`; GPROJ_ERROR_NUMBER also for
+   forces beyond all numbers): zeros, residual_vertex -1. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
