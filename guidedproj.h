@@ -1666,8 +1666,8 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
 /* Forces and loads as they are, and forces as a start. `error` may be NULL; a refused call changes nothing, and the
-   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers and
-   positions that are not finite, _MEMORY, or the form's error.
+   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers that
+   are not finite and positions that a solve would refuse, _MEMORY, or the form's error.
 
    The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
@@ -1706,8 +1706,8 @@ typedef struct gproj_forces {
     double max_reaction;
 } gproj_forces;
 
-/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`; GPROJ_ERROR_NUMBER: they are
-   beyond all numbers): zeros, residual_vertex -1. */
+/* Measures the mesh as it is, with the forces from the last solve. Refused (see `error`; GPROJ_ERROR_NUMBER also for
+   forces beyond all numbers): zeros, residual_vertex -1. */
 GPROJ_API gproj_forces gproj_measure_forces(gproj_form *form, gproj_error *error);
 
 /* ------------------------------------------------------------------------------------------------------------
@@ -10598,7 +10598,8 @@ GPROJI_INTERNAL int32_t gproji_last_iteration(const gproji_loop *loop, const gpr
 /* The weight of a group in iteration n: here wishes fade. */
 GPROJI_INTERNAL double gproji_weight_in(const gproji_loop *loop, const gproji_group *g, int32_t n) {
     int32_t last = gproji_last_iteration(loop, g);
-    double weight = g->schedule.weight * (gproji_is_fading(loop, g) ? loop->wishes.fading : 1);
+    double weight = g->schedule.weight;
+    if (gproji_is_fading(loop, g)) weight = gproji_fmin(weight * loop->wishes.fading, gproji_weight_most);
     if (g->role == GPROJI_BRAKE)
         return weight * loop->system->stiffness *
                gproji_fmin(gproji_fmax(loop->system->stiffness - 1, 0), gproji_brake_most);
@@ -11631,7 +11632,8 @@ GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, b
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
         if (g->role == GPROJI_GUARD && !tangential) g->weight = 0;
-        if (g->kind == GPROJ_WISH && largest > 0) g->weight *= scale / largest;
+        if (g->kind == GPROJ_WISH && largest > DBL_MIN)
+            g->weight = gproji_fmin(g->weight * (scale / largest), gproji_weight_most);
     }
 }
 
@@ -22651,46 +22653,6 @@ GPROJI_INTERNAL void gproji_tell_overturned(const gproj_form *form, gproj_result
                 lost[!hung]);
 }
 
-/* Says that a vertex stood outside of the supports as seen from above, if all forces have one sign and loads are
-   weights: there sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so
-   none can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
-GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
-    static const char *const sign[2] = {"compression", "tension"};
-    const gproji_statics *s = form->statics;
-    const gproj_mesh *mesh = form->mesh;
-    int32_t vertex = -1, bounded[2] = {0, 0}, edges = 0, e, v, k; /* bounded: rows of either sign */
-    double most = 1;                                              /* mean edge lengths */
-    const gproji_part *part;
-    if (!s || !gproji_is_on(form, s->group)) return;
-    for (part = form->part; part; part = part->next)
-        if (gproji_is_on(form, part->group) &&
-            (part->rule == &gproji_compression_rule || part->rule == &gproji_tension_rule))
-            bounded[part->rule == &gproji_tension_rule] += gproji_group_at(form->system, part->group)->row_count;
-    for (e = 0; e < mesh->edge_count; ++e) edges += s->force[e] >= 0;
-    if (bounded[0] < edges && bounded[1] < edges) return;
-    for (v = 0; s->loads.point_load && v < mesh->vertex_count; ++v)
-        if (s->loads.point_load[3 * (size_t)v] != 0 || s->loads.point_load[3 * (size_t)v + 1] != 0) return;
-    for (k = 0; k < 32; ++k) {
-        double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k);
-        double supported = -HUGE_VAL, out = -HUGE_VAL;
-        int32_t farthest = -1;
-        for (v = 0; v < mesh->vertex_count; ++v) {
-            bool supports = s->axes[v] != GPROJI_AXES;
-            const double *at = (supports ? gproj_system_values(form->system) : form->original) + 3 * (size_t)v;
-            double here = c * at[0] + d * at[1];
-            if (mesh->vertex_halfedge[v] < 0) continue;
-            if (supports) supported = gproji_fmax(supported, here);
-            if (!supports && here > out) out = here, farthest = v;
-        }
-        if (out - supported > most) most = out - supported, vertex = farthest;
-    }
-    if (vertex >= 0 && most < HUGE_VAL) /* there are supports */
-        gproji_tell(result,
-                    "; %s alone keeps all vertices between the supports as seen from above, but vertex %d was "
-                    "%g mean edges outside: support it, or allow %s",
-                    sign[bounded[0] < edges], vertex, most, sign[bounded[0] >= edges]);
-}
-
 /* -- demands that can never hold -- */
 
 /* Finds the vertices that stay: a constraint prescribes each coordinate by a row with a single term, or they are
@@ -23166,7 +23128,8 @@ GPROJI_INTERNAL int32_t gproji_find_floating(gproj_form *form) {
     return found;
 }
 
-/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. */
+/* An edge for compression only and for tension only, or whose stress bounds ask for the other sign; -1: none. Marks the
+   forces' variables in the system's step and saved x: 1 for compression only, for tension only. */
 GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
     double *positive = gproji_spare(form->system, 0), *negative = gproji_spare(form->system, 1), sign;
     const int32_t *force = form->statics->force;
@@ -23190,6 +23153,49 @@ GPROJI_INTERNAL int32_t gproji_find_contradiction(const gproj_form *form) {
         }
     }
     return found;
+}
+
+/* Says that a vertex stood outside of the supports as seen from above, if all forces are to have one sign and loads are
+   weights: then sum w_ij (x_j - x_i) = 0 makes each vertex that is no support a weighted mean of its neighbours, so
+   none with a load can be farther out in any direction than the supports (Tutte: How to draw a graph, 1963). */
+GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *result) {
+    const gproji_statics *s = form->statics;
+    const gproj_mesh *mesh = form->mesh;
+    const double *first = form->original, *x = gproj_system_values(form->system);
+    const double *positive = gproji_spare(form->system, 0), *negative = gproji_spare(form->system, 1);
+    bool pushed = true, pulled = true; /* all forces are bound to it */
+    int32_t vertex = -1, v, e, k;
+    double most = 1; /* mean edge lengths */
+    if (!s || !gproji_is_on(form, s->group) || gproji_find_contradiction(form) >= 0) return;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        if (s->force[e] < 0) continue;
+        pushed = pushed && positive[s->force[e]] > 0;
+        pulled = pulled && negative[s->force[e]] > 0;
+    }
+    gproji_loads_at(mesh, &s->loads, 1, form->scale, first, s->work);
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        const double *load = s->work + 3 * (size_t)v;
+        if (load[0] != 0 || load[1] != 0 || load[2] > 0) return;
+    }
+    for (k = 0; (pushed || pulled) && k < 32; ++k) {
+        double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k), supported = -HUGE_VAL, out = -HUGE_VAL;
+        int32_t farthest = -1;
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            size_t i = 3 * (size_t)v;
+            double before = c * first[i] + d * first[i + 1], now = c * x[i] + d * x[i + 1];
+            if (mesh->vertex_halfedge[v] < 0) continue;
+            if (s->axes[v] != GPROJI_AXES) /* supports may have moved */
+                supported = gproji_fmax(supported, gproji_fmax(before, now));
+            else if (s->work[i + 2] < 0 && before > out)
+                out = before, farthest = v;
+        }
+        if (out - supported > most) most = out - supported, vertex = farthest;
+    }
+    if (vertex >= 0 && most < HUGE_VAL) /* there are supports */
+        gproji_tell(result,
+                    "; %s alone keeps all vertices between the supports as seen from above, but vertex %d was "
+                    "%g mean edges outside: support it, or allow %s",
+                    pushed ? "compression" : "tension", vertex, most, pushed ? "tension" : "compression");
 }
 
 /* Says which demand excludes equilibrium of any shape, or else which constraint of a vertex holds it back most. */
@@ -23444,13 +23450,15 @@ GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
-/* The largest weight of a wish of the caller's, or for the release of a drag; 0: there is none. */
+/* The largest weight of a row, with the group's, in wishes of the caller's or for the release of a drag; 0: there is
+   none. */
 GPROJI_INTERNAL double gproji_largest_wish(const gproj_form *form) {
     double largest = 0;
-    int32_t i;
+    int32_t i, r;
     for (i = 0; i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
-        if (gproji_is_callers_wish(g) && g->row_count > 0) largest = gproji_fmax(largest, g->schedule.weight);
+        for (r = 0; gproji_is_callers_wish(g) && r < g->row_count; ++r)
+            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
     }
     return largest;
 }
@@ -23705,7 +23713,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     guiding = smooth ? gproji_min(iterations, 20) : iterations;
     solve->loop.wishes.last = gproji_max(1, guiding - guiding / 2);
     if (forces) solve->loop.wishes.last = gproji_min(9, solve->loop.wishes.last);
-    if (beginning->fading && wished > 0) solve->loop.wishes.fading = gproji_nearest_scale / wished;
+    if (beginning->fading && wished > DBL_MIN) solve->loop.wishes.fading = gproji_nearest_scale / wished;
     for (i = 0; beginning->left_out && i < gproj_system_group_count(form->system); ++i) {
         const gproji_group *g = gproji_group_at(form->system, i);
         if (g->row_count > 0 && g->schedule.weight > 0 && gproji_is_callers_wish(g) &&
@@ -23910,7 +23918,7 @@ GPROJI_INTERNAL gproj_result gproji_solve_smooth(gproj_form *form, int32_t itera
     return result;
 }
 
-/* Refuses a solve, but for the release; that ends where it is, and its result stays. */
+/* Refuses a solve during a drag. A release under way ends where it is, and its result stays. */
 static const char gproji_drag_first[] = "a drag is under way: end or cancel it before the form is solved";
 
 GPROJ_API gproj_result gproj_solve(gproj_form *form, int32_t iterations, const gproj_solve_options *options) {
@@ -23995,7 +24003,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstM", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstN", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -24157,7 +24165,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'M'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'N'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

@@ -1385,6 +1385,35 @@ GPROJT_TEST(smooth_attempts_follow_the_nearest) {
         }
 }
 
+/* In these attempts, too, wishes are scaled by the largest weight of a row: small or large weights of all rows change nothing. */
+GPROJT_TEST(rows_weights_after_the_nearest) {
+    static const double own[4] = {1, 1e-9, 1e4, 1e-80}; /* the last one is beyond what scaling can do */
+    gproj_mesh *mesh = gprojt_twisted(6, 0.2);
+    double *start = gprojt_keep(mesh), *end = NULL;
+    int32_t k, g, r;
+    for (k = 0; k < 4; ++k) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_solve_options options = gprojt_smooth();
+        gprojt_keeper keeper = {form, -1, NULL, 0};
+        gproj_result result;
+        gprojt_add_circular(form, NULL);
+        for (g = gproj_add_closeness(form, 1), r = 0; r < gproj_form_group_info(form, g).rows; ++r)
+            gproj_system_set_row_weight(gproj_form_system(form), g, r, own[k]);
+        gproj_set_schedule(form, g, gproj_keep(1));
+        options.nearest = true, options.on_iteration = gprojt_keep_state, options.user = &keeper;
+        result = gproj_solve(form, 60, &options);
+        GPROJT_CHECK(result.outcome == GPROJ_ITERATION_LIMIT || k == 3);
+        GPROJT_CHECK(result.outcome <= GPROJ_STALLED && result.attempts > 1); /* states could be saved */
+        if (!end) end = gprojt_keep(mesh);
+        if (k < 3) GPROJT_CHECK(gprojt_change(mesh, end) < 1e-9);
+        free(keeper.state);
+        gproj_form_destroy(form);
+        gprojt_put_back(mesh, start);
+    }
+    free(start), free(end);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Where nothing helps the attempt that looked for the nearest mesh is one of four, and any may count. */
 GPROJT_TEST(attempts_after_the_nearest) {
     gproj_mesh *mesh = gprojt_twisted(6, 0.3);
@@ -1786,6 +1815,7 @@ int main(void) {
     GPROJT_RUN(smooth_and_nearest_is_nearest);
     GPROJT_RUN(nearest_meshes_keep_edges);
     GPROJT_RUN(smooth_attempts_follow_the_nearest);
+    GPROJT_RUN(rows_weights_after_the_nearest);
     GPROJT_RUN(attempts_after_the_nearest);
     GPROJT_RUN(loads_of_the_attempt_that_counts);
     GPROJT_RUN(wishes_of_the_attempt_that_counts);
