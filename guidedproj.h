@@ -11617,17 +11617,25 @@ enum {
     GPROJI_NEAREST_RETRACT = 3  /* steps back to the constraints */
 };
 
+/* The largest weight of a row, with the group's, in all wishes or in the caller's and those for the release of a drag;
+   0: there is none. */
+GPROJI_INTERNAL double gproji_heaviest_wish(const gproj_system *s, bool callers) {
+    double heaviest = 0;
+    int32_t i, r;
+    for (i = 0; i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        if (g->kind != GPROJ_WISH || (callers && !gproji_is_callers_wish(g))) continue;
+        for (r = 0; r < g->row_count; ++r) heaviest = gproji_fmax(heaviest, g->schedule.weight * g->row[r].weight);
+    }
+    return heaviest;
+}
+
 /* The weights of a slide (`tangential`), or of a projection between slides, without the guard: wishes keep theirs,
    whatever their schedules say, scaled so that a row's largest, with the row's own, is `scale`. */
 GPROJI_INTERNAL void gproji_set_nearest_weights(gproj_system *s, double scale, bool tangential) {
-    double largest = 0;
-    int32_t i, r;
+    double largest = gproji_heaviest_wish(s, false);
+    int32_t i;
     s->progress.tangential = tangential;
-    for (i = 0; i < s->group_count; ++i) {
-        const gproji_group *g = &s->group[i];
-        for (r = 0; g->kind == GPROJ_WISH && r < g->row_count; ++r)
-            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
-    }
     for (i = 0; i < s->group_count; ++i) {
         gproji_group *g = &s->group[i];
         g->weight = g->schedule.weight;
@@ -23172,12 +23180,13 @@ GPROJI_INTERNAL void gproji_tell_overhang(const gproj_form *form, gproj_result *
         pushed = pushed && positive[s->force[e]] > 0;
         pulled = pulled && negative[s->force[e]] > 0;
     }
+    if (!pushed && !pulled) return;
     gproji_loads_at(mesh, &s->loads, 1, form->scale, first, s->work);
     for (v = 0; v < mesh->vertex_count; ++v) {
         const double *load = s->work + 3 * (size_t)v;
         if (load[0] != 0 || load[1] != 0 || load[2] > 0) return;
     }
-    for (k = 0; (pushed || pulled) && k < 32; ++k) {
+    for (k = 0; k < 32; ++k) {
         double c = cos(GPROJI_PI / 16 * k), d = sin(GPROJI_PI / 16 * k), supported = -HUGE_VAL, out = -HUGE_VAL;
         int32_t farthest = -1;
         for (v = 0; v < mesh->vertex_count; ++v) {
@@ -23450,19 +23459,6 @@ GPROJI_INTERNAL void gproji_reset_mesh(gproj_form *form) {
     memcpy(form->mesh->position, form->before, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
 }
 
-/* The largest weight of a row, with the group's, in wishes of the caller's or for the release of a drag; 0: there is
-   none. */
-GPROJI_INTERNAL double gproji_largest_wish(const gproj_form *form) {
-    double largest = 0;
-    int32_t i, r;
-    for (i = 0; i < gproj_system_group_count(form->system); ++i) {
-        const gproji_group *g = gproji_group_at(form->system, i);
-        for (r = 0; gproji_is_callers_wish(g) && r < g->row_count; ++r)
-            largest = gproji_fmax(largest, g->schedule.weight * g->row[r].weight);
-    }
-    return largest;
-}
-
 /* Weights of a step's differences along edges, and of a vertex's displacement relative to that. With more of the latter
    meshes move less and become rough. */
 static const double gproji_metric_smooth = 0.1, gproji_metric_near = 0.15;
@@ -23609,7 +23605,8 @@ GPROJI_INTERNAL void gproji_begin_forces(gproj_form *form, bool nearest, bool wi
    has left is switched off. Returns for how many iterations the guard takes the solve to be guided. */
 GPROJI_INTERNAL int32_t gproji_set_default_guidance(gproj_form *form, int32_t iterations,
                                                     const gproji_beginning *beginning, bool skip, bool nearest) {
-    bool others = gproji_largest_wish(form) > 0, wanted = !skip && !others, nearby = beginning->closeness > 0;
+    bool others = gproji_heaviest_wish(form->system, true) > 0, wanted = !skip && !others,
+         nearby = beginning->closeness > 0;
     int32_t half = gproji_max(1, iterations - iterations / 2), i;
     gproj_schedule schedule = gproj_fade(wanted ? 0.03 : 0, gproji_min(5, half));
     gproj_schedule fairness = gproj_fade(beginning->fairness, 20);
@@ -23676,7 +23673,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
     bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
     bool started = form->statics && form->statics->started;
-    double wished = gproji_largest_wish(form);
+    double wished = gproji_heaviest_wish(form->system, true);
     const gproji_part *part;
     int32_t guided, guiding, i;
     solve->on = solve->finished = false;
@@ -23777,7 +23774,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
-    if (gproji_largest_wish(form) > 0 && !loop->attempt.left_out && !gproji_is_held(form))
+    if (gproji_heaviest_wish(form->system, true) > 0 && !loop->attempt.left_out && !gproji_is_held(form))
         gproji_tell(result, "; nothing holds the mesh, so the wishes may shrink it: fix vertices or add a reference");
     if (result->outcome == GPROJ_CONVERGED) gproji_tell_overturned(form, result);
     if (result->outcome == GPROJ_STALLED || result->outcome == GPROJ_ITERATION_LIMIT) {
