@@ -170,7 +170,7 @@ static int32_t times_offered(const gproji_candidates *c, kind k) {
     for (i = 0; i < c->count; ++i) {
         const gproji_pattern *p = &c->pattern[i];
         n += p->first == k.first && p->end[0] == k.end[0] && p->end[1] == k.end[1] && p->edges == k.edges &&
-             p->below == k.below && p->rows == 0 && (p->edges != p->sides - 1 || p->below);
+             p->below == k.below && p->rows == 0;
     }
     return n;
 }
@@ -198,10 +198,10 @@ static bool is_solvable(kind k, int32_t sides, const int32_t *length) {
 }
 
 GPROJT_TEST(all_patterns_are_found) {
-    static const int32_t longest[SIDES + 1] = {0, 0, 1, 1, 4, 3, 2};
+    static const int32_t longest[SIDES + 1] = {0, 0, 0, 6, 4, 3, 2};
     static gproji_candidates c;
     int32_t sides, solvable = 0;
-    for (sides = 2; sides <= SIDES; ++sides) {
+    for (sides = 3; sides <= SIDES; ++sides) {
         int32_t length[SIDES] = {1, 1, 1, 1, 1, 1};
         do {
             kind k;
@@ -214,10 +214,8 @@ GPROJT_TEST(all_patterns_are_found) {
                     for (k.first = 0; k.first < sides; ++k.first)
                         for (k.below = 0; k.below < 1 << (k.edges - 1); ++k.below) {
                             kind t = turned(k, sides);
-                            bool rows = k.edges == sides - 1 && (!k.below || !t.below); /* the kind with rows, too */
                             bool self = memcmp(&t, &k, sizeof k) == 0, can = is_solvable(k, sides, length);
                             int32_t n = times_offered(&c, k);
-                            if (rows) continue;
                             if (!self && k.end[0] == k.end[1]) n += times_offered(&c, t);
                             if (n != can)
                                 printf("  %d sides %d %d %d %d %d %d: ends %d %d, below %d, first %d: %d not %d\n",
