@@ -2709,7 +2709,6 @@ GPROJI_INTERNAL void gproji_format_list(char *text, size_t size, const char *for
             char number[GPROJ_NUMBER_SIZE];
             size_t digits = gproji_number_write_digits(va_arg(list, double), 3, number);
             length = gproji_append(text, size, length, number, digits);
-            break;
         }
         }
     }
