@@ -15170,6 +15170,7 @@ typedef struct gproji_polygon {
     int32_t reflex_count;
     int32_t ears;
     int32_t count;
+    int64_t budget;   /* how many corners may still be looked at */
     double tolerance; /* areas below it count as zero */
 } gproji_polygon;
 
@@ -15209,12 +15210,12 @@ GPROJI_INTERNAL void gproji_polygon_set(gproji_polygon *polygon, const gproj_mes
 
 /* True if corner b is an ear: it turns left and no other corner is in the triangle a b c; if any is, one is that does
    not turn left. Those that do by now leave the list. Takes each corner looked at from the budget. */
-GPROJI_INTERNAL bool gproji_is_ear(gproji_polygon *polygon, int32_t b, int64_t *budget) {
+GPROJI_INTERNAL bool gproji_is_ear(gproji_polygon *polygon, int32_t b) {
     int32_t a = polygon->prev[b], c = polygon->next[b], k = 0;
     if (gproji_turn2(polygon->xy, a, b, c) <= polygon->tolerance) return false;
     while (k < polygon->reflex_count) {
         int32_t i = polygon->reflex[k];
-        --*budget;
+        --polygon->budget;
         if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) > 0) {
             polygon->reflex[k] = polygon->reflex[--polygon->reflex_count];
             continue;
@@ -15233,23 +15234,23 @@ GPROJI_INTERNAL bool gproji_is_ear(gproji_polygon *polygon, int32_t b, int64_t *
    or 2048 looks a corner are used up (so that time is linear in the mesh; 1365 corners, half of them reflex, need no
    more), any is cut off. */
 GPROJI_INTERNAL int32_t gproji_cut_ears(gproji_polygon *polygon, int32_t b, int32_t least, const gproj_mesh *mesh) {
-    int64_t budget = 2048 * (int64_t)polygon->count;
     int32_t left = polygon->count, refused = 0, i;
     bool any = false, anew = true;
+    polygon->budget = 2048 * (int64_t)polygon->count;
     while (left > least) {
         int32_t a = polygon->prev[b], c = polygon->next[b], *ear = polygon->ear + 3 * (size_t)polygon->ears;
         /* 1. At first, and where no ear was cut off, all corners may be others than before. */
-        if (anew) polygon->reflex_count = 0, budget -= left;
+        if (anew) polygon->reflex_count = 0, polygon->budget -= left;
         for (i = b; anew; i = polygon->next[i], anew = i != b) {
             polygon->tried[i] = false;
             if (gproji_turn2(polygon->xy, polygon->prev[i], i, polygon->next[i]) <= 0)
                 polygon->reflex[polygon->reflex_count++] = i;
         }
         /* 2. On to the next corner, unless this one can go. */
-        any = any || refused >= left || budget <= 0;
+        any = any || refused >= left || polygon->budget <= 0;
         if (refused >= 2 * left) return -1;
         if ((mesh && gproji_halfedge_between(mesh, polygon->vertex[a], polygon->vertex[c]) >= 0) ||
-            (!any && (polygon->tried[b] || !gproji_is_ear(polygon, b, &budget)))) {
+            (!any && (polygon->tried[b] || !gproji_is_ear(polygon, b)))) {
             polygon->tried[b] = true;
             ++refused, b = c;
             continue;
@@ -15259,7 +15260,7 @@ GPROJI_INTERNAL int32_t gproji_cut_ears(gproji_polygon *polygon, int32_t b, int3
         polygon->next[a] = c, polygon->prev[c] = a;
         polygon->tried[a] = polygon->tried[c] = false;
         ++polygon->ears, --left, refused = 0;
-        anew = any && budget > 0, any = false;
+        anew = any && polygon->budget > 0, any = false;
         b = c;
     }
     return b;

@@ -578,6 +578,53 @@ GPROJT_TEST(large_faces_take_linear_time) { /* a comb and a crossing star with 2
     }
 }
 
+/* Cuts the soup's face into triangles and frees the soup. Returns how many corners were looked at. */
+static int64_t gprojt_looks(gprojt_soup *s) {
+    gproj_mesh *mesh = gprojt_soup_mesh(s, NULL, NULL);
+    gproji_heap heap = gproji_heap_of(NULL);
+    gproji_pool pool;
+    gproji_polygon polygon;
+    int32_t n = s->vertex_count;
+    memset(&polygon, 0, sizeof polygon);
+    gproji_pool_start(&pool, &heap);
+    if (mesh && gproji_polygon_take(&polygon, &pool, n)) {
+        gproji_polygon_set(&polygon, mesh, 0);
+        GPROJT_CHECK(gproji_cut_ears(&polygon, 1, 3, NULL) >= 0 && polygon.ears == n - 3);
+    } else
+        GPROJT_CHECK(false);
+    gproji_pool_give_all(&pool);
+    gproj_mesh_destroy(mesh);
+    gprojt_soup_free(s);
+    return 2048 * (int64_t)n - polygon.budget;
+}
+
+/* A circle with a notch takes a few looks a corner; a comb and corners along a line take all that there are, and no more.
+   In a thin arc only corners at its ends are ears, and yet no other is tried more than three times. */
+GPROJT_TEST(looks_at_corners_are_counted) {
+    static const int32_t count[4] = {3000, 9200, 4600, 1360};
+    int kind;
+    for (kind = 0; kind < 4; ++kind) {
+        int32_t n = count[kind], half = n / 2, i, *corner = (int32_t *)malloc((size_t)n * sizeof(int32_t));
+        int64_t looks, all = 2048 * (int64_t)n;
+        gprojt_soup s;
+        memset(&s, 0, sizeof s);
+        for (i = 0; i < n; ++i) {
+            double x = i, y = 0, angle = 6.283185307179586 * i / n, r = i == half ? 0.5 : 1;
+            if (kind == 1) y = i == 0 || i == n - 1 ? -2 * n : i & 1 ? n : 0;
+            if (kind == 2 && i >= half) x = n - i - 0.5;
+            if (kind == 3) angle = 5.0 * (i < half ? i : n - 1 - i) / half, r = i < half ? 1 : 1 - 1e-5;
+            if (kind == 0 || kind == 3) x = r * cos(angle), y = r * sin(angle);
+            corner[i] = gprojt_add_vertex(&s, x, y, 0);
+        }
+        gprojt_add_face(&s, n, corner);
+        free(corner);
+        looks = gprojt_looks(&s);
+        if (kind == 0) GPROJT_CHECK(looks < 3 * n);
+        if (kind == 1 || kind == 2) GPROJT_CHECK(looks >= all && looks < all + 2 * n);
+        if (kind == 3) GPROJT_CHECK(looks < n + 3 * (int64_t)n * half);
+    }
+}
+
 /* Boxes hold their items and nothing more: 8 segments along a line, 4 on each side. */
 GPROJT_TEST(boxes_are_tight) {
     double point[27] = {0};
@@ -688,6 +735,7 @@ int main(void) {
     GPROJT_RUN(faces_that_are_not_convex);
     GPROJT_RUN(convex_faces_are_fans);
     GPROJT_RUN(large_faces_take_linear_time);
+    GPROJT_RUN(looks_at_corners_are_counted);
     GPROJT_RUN(boxes_are_tight);
     GPROJT_RUN(hierarchy_of_equal_items);
     GPROJT_RUN(every_allocation_fails_once);
