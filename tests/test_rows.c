@@ -428,6 +428,9 @@ GPROJT_TEST(wrong_rows_are_refused) {
         if (!strstr(gproj_form_error(form)->message, words[i]))
             printf("  %d: %s\n", i, gproj_form_error(form)->message);
         GPROJT_CHECK(got == -1 && strstr(gproj_form_error(form)->message, words[i]) != NULL);
+        if (i == 15 || i == 16)
+            GPROJT_CHECK(gproj_form_error(form)->code == GPROJ_ERROR_ARGUMENT &&
+                         gproj_form_error(form)->place == GPROJ_PLACE_GROUP && gproj_form_error(form)->index == group);
         gproj_form_destroy(form);
         gproj_mesh_destroy(mesh);
     }

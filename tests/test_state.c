@@ -1291,6 +1291,37 @@ GPROJT_TEST(states_of_other_groups) {
     free(state);
 }
 
+/* Forms whose only difference is one load. */
+GPROJT_TEST(states_of_other_loads) {
+    static const int32_t pin[3] = {0, 3, 12};
+    gproj_mesh *mesh = gprojt_roof(3, 0.05);
+    double *edge = (double *)calloc((size_t)mesh->edge_count, sizeof(double));
+    double *point = (double *)calloc(3 * (size_t)mesh->vertex_count, sizeof(double));
+    uint8_t *state = NULL;
+    size_t size = 0;
+    int k;
+    for (k = 0; k < 6; ++k) {
+        gproj_form *form = gproj_form_create(mesh, NULL);
+        gproj_loads loads;
+        gproj_supports supports = {3, pin, NULL};
+        memset(&loads, 0, sizeof loads);
+        edge[mesh->edge_count - 1] = k == 2, point[3 * mesh->vertex_count - 1] = k == 5 ? -2 : -1;
+        loads.density = k == 1, loads.area_load = k == 3, loads.snow = k == 4;
+        if (k != 1) loads.edge_density = edge;
+        loads.point_load = point;
+        GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
+        if (k == 0) {
+            state = gprojt_save(form, &size);
+            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
+        } else {
+            gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
+        }
+        gproj_form_destroy(form);
+    }
+    free(state), free(edge), free(point);
+    gproj_mesh_destroy(mesh);
+}
+
 /* Restored in the same form, a state needs no further memory: what has been analysed is still right. */
 GPROJT_TEST(restored_without_an_analysis) {
     int design;
@@ -1434,6 +1465,7 @@ int main(void) {
     GPROJT_RUN(states_of_other_variables);
     GPROJT_RUN(states_of_mirrored_meshes);
     GPROJT_RUN(states_of_other_groups);
+    GPROJT_RUN(states_of_other_loads);
     GPROJT_RUN(restored_without_an_analysis);
     GPROJT_RUN(what_cannot_be_saved);
     GPROJT_RUN(unknowns_that_cannot_be_saved);
