@@ -149,6 +149,35 @@ GPROJT_TEST(chosen_vertices) {
     gproj_mesh_destroy(mesh);
 }
 
+/* A plane and a line leave the middle of their vertices, wherever vertex 0 is: all are lifted with three of them. */
+GPROJT_TEST(planes_are_lifted) {
+    int lines;
+    for (lines = 0; lines < 2; ++lines) {
+        gproj_mesh *mesh = gprojt_mesh_of(gprojt_quad_grid(2, 2));
+        int32_t all[9], v, count = lines ? 3 : 9;
+        static const int32_t lifted[3] = {0, 8, 2};
+        double target[9];
+        gproj_form *form;
+        gproj_result result;
+        for (v = 0; v < 9; ++v) { /* vertex 0 has the y and z of the middle */
+            double *p = mesh->position + 3 * v;
+            all[v] = lines ? 4 * v : v;
+            p[0] = v % 3 + v / 3, p[1] = v % 3 - v / 3, p[2] = 0;
+        }
+        form = gproj_form_create(mesh, NULL);
+        for (v = 0; v < 3; ++v)
+            memcpy(target + 3 * v, mesh->position + 3 * lifted[v], 3 * sizeof(double)), target[3 * v + 2] = 1;
+        gproj_add_targets(form, lines ? 2 : 3, lifted, target, 1);
+        GPROJT_CHECK((lines ? gproj_add_collinear(form, count, all, 1) : gproj_add_coplanar(form, count, all, 1)) >= 0);
+        result = gproj_solve(form, 50, NULL);
+        if (result.outcome != GPROJ_CONVERGED) printf("    %d: %s\n", lines, result.message);
+        GPROJT_CHECK(result.outcome == GPROJ_CONVERGED);
+        for (v = 0; v < count; ++v) GPROJT_NEAR(mesh->position[3 * all[v] + 2], 1, 1e-9);
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh);
+    }
+}
+
 /* Points that are on a plane or line already stay; sets too small to say anything, doubled vertices and weight 0 do no
    harm. */
 GPROJT_TEST(special_sets) {
@@ -350,6 +379,7 @@ int main(void) {
     GPROJT_RUN(boundaries_between_corners);
     GPROJT_RUN(loops_without_corners);
     GPROJT_RUN(chosen_vertices);
+    GPROJT_RUN(planes_are_lifted);
     GPROJT_RUN(special_sets);
     GPROJT_RUN(edges_orthogonal_to_a_plane);
     GPROJT_RUN(only_the_ends_of_edges_move);

@@ -323,6 +323,10 @@ GPROJT_TEST(sentences) {
     GPROJT_CHECK(gprojt_save(3, path, NULL) && gprojt_which("r.obj") == 3);
     remove("r.obj");
     for (i = 4000; i < 4080; i += 2) memcpy(path + i, "./", 2);
+    path[4076] = '/', memcpy(path + 4077, "r.obj", 6); /* the new file's has 4095 characters */
+    GPROJT_CHECK(gprojt_save(3, path, NULL) && gprojt_which("r.obj") == 3);
+    remove("r.obj");
+    memcpy(path + 4076, "./", 2);
     memcpy(path + 4080, "r.obj", 6); /* a path, but the new file's would be none */
     GPROJT_CHECK(!gprojt_save(3, path, "too long a path"));
     memset(path, 'n', 251);

@@ -407,6 +407,22 @@ GPROJT_TEST(restored_over_another_solve) {
     }
 }
 
+/* Between solves nothing is under way: where such a state is restored, the end of another solve is not told any more. */
+GPROJT_TEST(restored_after_the_end) {
+    gproj_mesh *mesh = gprojt_roof(5, 0.08);
+    gproj_form *form = gprojt_design(mesh, GPROJT_PLANAR, NULL);
+    size_t size;
+    uint8_t *state = gprojt_save(form, &size);
+    gproj_solve_begin(form, 20, NULL, NULL);
+    gprojt_go_on(form);
+    GPROJT_CHECK(gproj_solve_advance(form, 0).outcome == GPROJ_CONVERGED);
+    GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK && !gproj_solve_is_on(form));
+    GPROJT_CHECK(strstr(gproj_solve_advance(form, 0).message, "nothing is under way"));
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
 /* A form in frames whose groups are few. */
 static void gprojt_set_out_plainly(gprojt_under_way *under, const gproj_solve_options *options,
                                    const gproj_host *host) {
@@ -1442,6 +1458,7 @@ int main(void) {
     GPROJT_RUN(changes_between_frames_are_saved);
     GPROJT_RUN(questions_between_frames);
     GPROJT_RUN(restored_over_another_solve);
+    GPROJT_RUN(restored_after_the_end);
     GPROJT_RUN(restored_where_groups_came_in);
     GPROJT_RUN(restored_without_memory);
     GPROJT_RUN(resumed_after_attempts);
