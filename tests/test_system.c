@@ -98,6 +98,7 @@ GPROJT_TEST(group_info) {
     gproj_system *s = gprojt_hand_system();
     gproj_group_info info = gproj_system_group_info(s, 0);
     double squares = 0;
+    char name[48];
     int32_t r;
     GPROJT_CHECK(!strcmp(info.name, "by hand") && info.kind == GPROJ_CONSTRAINT && info.place == GPROJ_PLACE_VERTEX);
     GPROJT_CHECK(info.rows == GPROJT_HAND_ROWS && info.schedule.weight == 1 && info.max == 0);
@@ -116,6 +117,9 @@ GPROJT_TEST(group_info) {
     GPROJT_CHECK(info.rms == 0 && gproj_system_group_count(s) == 2 && gproj_system_variable_count(s) == 3);
     gprojt_add_group(s, "thirty bytes, and then one of \xe2\x82\xac and more", GPROJ_WISH, 0.5); /* a euro sign */
     GPROJT_CHECK(!strcmp(gproj_system_group_info(s, 2).name, "thirty bytes, and then one of "));
+    memset(name, '\x80', sizeof name - 1), name[0] = 'x', name[sizeof name - 1] = 0;
+    gprojt_add_group(s, name + 1, GPROJ_WISH, 0.5); /* no character begins anywhere */
+    GPROJT_CHECK(!strcmp(gproj_system_group_info(s, 3).name, ""));
     gproj_system_destroy(s);
 }
 
