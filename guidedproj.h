@@ -2568,7 +2568,7 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
 /* Takes a block. NULL, and pool->failed, when there is no memory, or if the count is negative or too large for the
    address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    bool possible = count >= 0 && (uint64_t)count <= SIZE_MAX / 4 / size;
+    bool possible = (uint64_t)count <= SIZE_MAX / 4 / size; /* a negative one is beyond it */
     size_t bytes = possible ? sizeof(gproji_link) + (size_t)count * size : SIZE_MAX; /* which is refused */
     gproji_link *link = (gproji_link *)gproji_take(pool->heap, bytes, 1);
     if (!link) {
