@@ -786,18 +786,19 @@ GPROJT_TEST(faces_are_measured_and_no_holes) {
     gproj_mesh_destroy(mesh);
 }
 
-/* Meshes of equally many vertices and half-edges, but of other edges, or with a face in the place of a hole, are no
-   offsets of each other. */
+/* Meshes of equally many vertices and half-edges, but of other edges, with other numbers of the vertices, or with a face
+   in the place of a hole, are no offsets of each other. */
 GPROJT_TEST(meshes_of_other_faces_are_no_offsets) {
     static const double p[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0.5, 0.5, 1};
-    static const int32_t degree[] = {3, 3, 3, 3, 4}, corner[][12] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}};
+    static const int32_t degree[] = {3, 3, 3, 3, 4},
+                         corner[][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}, {1, 2, 3, 1, 3, 0}};
     static const int32_t roof[] = {0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 3, 2, 1, 0};
     int i;
-    for (i = 0; i < 2; ++i) { /* the other diagonal of a quad; a pyramid with and without its base */
-        gproj_mesh *a = i ? gproj_mesh_create(5, p, 4, degree, roof, NULL, NULL)
-                          : gproj_mesh_create(4, p, 2, degree, corner[0], NULL, NULL);
-        gproj_mesh *b = i ? gproj_mesh_create(5, p, 5, degree, roof, NULL, NULL)
-                          : gproj_mesh_create(4, p, 2, degree, corner[1], NULL, NULL);
+    for (i = 0; i < 3; ++i) { /* the other diagonal of a quad, twice; a pyramid with and without its base */
+        gproj_mesh *a = i == 2 ? gproj_mesh_create(5, p, 4, degree, roof, NULL, NULL)
+                               : gproj_mesh_create(4, p, 2, degree, corner[0], NULL, NULL);
+        gproj_mesh *b = i == 2 ? gproj_mesh_create(5, p, 5, degree, roof, NULL, NULL)
+                               : gproj_mesh_create(4, p, 2, degree, corner[i + 1], NULL, NULL);
         gproj_mesh *other = gproj_mesh_create(5, p, 2, degree, corner[0], NULL, NULL);
         GPROJT_REQUIRE(a && b && other && a->vertex_count == b->vertex_count && a->edge_count == b->edge_count);
         GPROJT_CHECK(!gproj_mesh_support(a, b, NULL, NULL) && !gproj_mesh_support(a, other, NULL, NULL));
