@@ -811,20 +811,22 @@ static void gprojx_put_attribute(FILE *file, const char *name, double x) {
     fputc('"', file);
 }
 
-/* Text with the characters that XML reserves, without control characters, and with ? for bytes that are not UTF-8. */
+/* Text with the characters that XML reserves, without control characters, and with ? for bytes that are not UTF-8 and
+   for U+FFFE and U+FFFF, which XML does not have. */
 static void gprojx_put_text(FILE *file, const char *text) {
-    size_t left = 0; /* bytes of the character under way */
-    for (; *text; ++text) {
-        if (left == 0) left = gprojx_utf8_size(text);
+    size_t size;
+    for (; *text; text += size ? size : 1) {
+        size = gprojx_utf8_size(text);
         if (*text == '&')
             fputs("&amp;", file);
         else if (*text == '<')
             fputs("&lt;", file);
         else if (*text == '>')
             fputs("&gt;", file);
+        else if (size == 0 || memcmp(text, "\xef\xbf\xbe", size) == 0 || memcmp(text, "\xef\xbf\xbf", size) == 0)
+            fputc('?', file);
         else if ((unsigned char)*text >= 32)
-            fputc(left == 0 ? '?' : *text, file);
-        left -= left > 0;
+            fwrite(text, 1, size, file);
     }
 }
 
