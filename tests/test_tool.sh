@@ -332,12 +332,29 @@ assert close(r['measures']['deviation_rms'], float(m['deviation_rms']), 1e-5)
 assert r['measures']['turned_faces'] == int(m['turned'])
 assert r['measures']['folded_edges'] == int(m['folded_after'])
 assert set(r['seconds']) >= {'set_up', 'analysis', 'assembly', 'factorisation', 'solve', 'total'}
+r = json.load(open('guided.json'))
+wish = [[g['weight'] for g in i['groups'] if g['name'] == 'fairness'][0] for i in r['iterations']]
+assert len(wish) > 4 and all((w == 0.2) == (n < 4) and (w > 0) == (i['energy'] > 0)
+                              for n, (w, i) in enumerate(zip(wish, r['iterations'])))
+assert not any('row' in g for g in r['groups']) and 'vertex' in r['groups'][1]
+r = json.load(open('volume.json'))
+assert r['result']['worst'] == {'group': 'volume'}
 PY
+    run grid.obj -o guided.obj --planar --plain --fairness 0.2 --fix boundary --iterations 8 --report guided.json
+    run grid.obj -o volume.obj --volume x1.3 --fix boundary --iterations 1 --report volume.json
     if python3 report.py 2>report.txt; then pass; else fail "the report: $(tail -n 3 report.txt | tr '\n' ' ')"; fi
     cp grid.obj 'odd "name\.obj'
     run 'odd "name\.obj' -o 'out <&>.obj' --planar --report odd.json --picture odd.svg
     check "a path with quotes in the report" python3 -m json.tool odd.json
     check "a path with <&> in the picture" python3 -c "import xml.dom.minidom as m; m.parse('odd.svg')"
+    # Bytes that only look like UTF-8 (a surrogate, too long, too large), and a character that XML does not have.
+    for bytes in '\355\240\200' '\340\200\200' '\360\217\277\277' '\364\220\200\200' '\357\277\276' '\357\277\277'; do
+        odd=odd$(printf "$bytes").obj
+        run grid.obj -o "$odd" --planar --report odd.json --picture odd.svg --title "a$(printf "$bytes")b"
+        check "the picture with the title a${bytes}b" python3 -c "import xml.dom.minidom as m; m.parse('odd.svg')"
+        check "the report with the path odd$bytes" python3 -m json.tool odd.json
+        rm -f "$odd"
+    done
 else
     skip "JSON and XML (python3 is not there)"
 fi

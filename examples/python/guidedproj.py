@@ -136,8 +136,8 @@ _Term = _struct("gproj_term", "int32 i, j; double a")
 _Progress = _struct("gproj_progress", "int32 iteration, iterations, unguided; bool tangential, trial")
 _Group = _struct("gproj_group", "string name; kind kind; bool global; place place; schedule schedule; "
                  "pointer refresh, refresh_user")
-_struct("gproj_group_info", "char[32] name; kind kind; place place; schedule schedule; int32 rows; double max, rms; "
-        "int32 worst_row, worst_element")
+_struct("gproj_group_info", "char[32] name; kind kind; place place; schedule schedule; double weight; int32 rows; "
+        "double max, rms; int32 worst_row, worst_element")
 _Iteration = _struct("gproj_iteration", "int32 number; double residual, merit, energy, step, epsilon, length; "
                      "int32 factorisations; double optimality; double[5] seconds")
 _SolveOptions = _struct("gproj_solve_options", "double tolerance, epsilon, time_budget; pointer on_iteration, user; "
@@ -1624,11 +1624,11 @@ class Form(_Sticky):
     def solve(self, iterations=None, callback=None, **options):
         """Solves (gproj_solve) and returns a record of gproj_result; the positions are then in form.V.
 
-        iterations: by default 60 if nearest, 200 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
+        iterations: by default 60 if nearest, 300 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
         after each, and returns False to cancel. Options, as in gproj_solve_options: smooth, nearest, tolerance, epsilon,
         time_budget, skip_damping, skip_closeness, skip_guard. Raises Error only where the outcome is FAILED."""
         if iterations is None:
-            iterations = 60 if options.get("nearest") else 200 if options.get("smooth") else 20
+            iterations = 60 if options.get("nearest") else 300 if options.get("smooth") else 20
         options, callback = _solve_options(callback, options)
         with self._c.calling(), _interruptible():
             result = _lib().gproj_solve(self._c, iterations, byref(options))
