@@ -24840,8 +24840,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
             result.outcome = GPROJ_CANCELLED;
             gproji_format(
                 result.message, sizeof result.message,
-                "cancelled: the release was stopped after %d iterations, and the mesh is as the last one left it",
-                result.iterations);
+                "cancelled: the release was stopped after %d iteration%s, and the mesh is as the last one left it",
+                result.iterations, result.iterations == 1 ? "" : "s");
         }
         form->solve.finished = false;
         gproji_schedule_release(drag, false);
