@@ -726,9 +726,10 @@ def test_drag():
     check(drag.end().outcome == Outcome.CONVERGED, "the end of frames")
     vertices, weights = form.find_reach(40, 2.5)
     check(vertices[0] == 40 and weights[0] == 1 and len(vertices) > 5, vertices, weights)
-    drag = form.drag(vertices, weights, start=[0, len(vertices)], position=[form.V[40]], residual_bound=0.1)
-    drag.move([form.V[40] + [0, 0, 0.3]])
-    raises(ValueError, drag.move, [[0, 0]])
+    drag = form.drag(vertices, weights, start=[0, len(vertices)], position=form.V[40], residual_bound=0.1)
+    drag.move(form.V[40] + [0, 0, 0.3])  # of a single handle
+    for positions in [[0, 0]], [0, 0], [[0, 0, 0], [0, 0, 0]], 0:
+        raises(ValueError, drag.move, positions)
     raises(Error, drag.move, [[0, 0, math.nan]], code=Code.ERROR_NUMBER)
     drag.cancel()
     raises(Error, drag.cancel, code=Code.ERROR_STATE)

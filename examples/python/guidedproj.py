@@ -1788,7 +1788,7 @@ class Drag(_Object):
     """Handles that are dragged while everything holds, see >>api-drag: made by form.drag.
 
         with form.drag([17]) as drag:      # released at the end, cancelled by an exception
-            drag.move([[x, y, z]])
+            drag.move([[x, y, z]])     # a row for each handle; of a single one also [x, y, z]
         print(drag.result.message)
     """
     _destroy = "gproj_drag_cancel"
@@ -1802,7 +1802,7 @@ class Drag(_Object):
             if count < 0 or start.max() > len(vertices):
                 raise ValueError("start: one entry more than handles is wanted, none beyond the number of vertices")
         weights = _beside(weights, len(vertices), "weights")
-        position = None if position is None else _doubles(position, (count, 3), "position")
+        position = None if position is None else self._places(position, count, "position")
         handles = _Handles(count=count, start=_address(start), vertex=_address(vertices), weight=_address(weights),
                            position=_address(position))
         options, error = _DragOptions(residual_bound=residual_bound, keep_wishes=keep_wishes), _Error()
@@ -1818,9 +1818,14 @@ class Drag(_Object):
                         Code.ERROR_STATE)
         return super()._c
 
+    @staticmethod
+    def _places(positions, count, what):
+        """k x 3 numbers, or 3 of a single handle."""
+        return _doubles(positions, (3,) if count == 1 and np.ndim(positions) == 1 else (count, 3), what)
+
     def move(self, positions):
         """Moves the handles to k x 3 positions, and form.V with them (gproj_drag_move)."""
-        positions, handle = _doubles(positions, (self.count, 3), "positions"), self._c
+        positions, handle = self._places(positions, self.count, "positions"), self._c
         with self._root.calling():
             code = _lib().gproj_drag_move(handle, positions.ctypes)
         if code != Code.OK:
