@@ -1642,9 +1642,9 @@ typedef struct gproj_loads {
                                    0 on vertices without edges that are no supports */
 } gproj_loads;
 
-/* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
-   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; it may still move:
-   see gproj_add_fixed and gproj_add_gliding_boundary. */
+/* `count` vertices are supports; 0: none, and nothing carries. slides[k]: the axes along which support k slides freely
+   and gives no reaction (a roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes
+   forces; it may still move: see gproj_add_fixed and gproj_add_gliding_boundary. */
 typedef struct gproj_supports {
     int32_t count;
     const int32_t *vertex;

@@ -1194,6 +1194,13 @@ def schedule(weight, decay=1.0, last=2**31 - 1):
     return _Schedule(weight, decay, last)
 
 
+def _limit(iterations, options):
+    """The iterations that a solve with these options is allowed, if none are given."""
+    if iterations is not None:
+        return iterations
+    return 60 if options.get("nearest") else 300 if options.get("smooth") else 20
+
+
 def _solve_options(callback, options):
     """The options, and the callback that they hold: always one, because Python notices Control-C there."""
 
@@ -1627,15 +1634,16 @@ class Form(_Sticky):
         iterations: by default 60 if nearest, 300 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
         after each, and returns False to cancel. Options, as in gproj_solve_options: smooth, nearest, tolerance, epsilon,
         time_budget, skip_damping, skip_closeness, skip_guard. Raises Error only where the outcome is FAILED."""
-        if iterations is None:
-            iterations = 60 if options.get("nearest") else 300 if options.get("smooth") else 20
+        iterations = _limit(iterations, options)
         options, callback = _solve_options(callback, options)
         with self._c.calling(), _interruptible():
             result = _lib().gproj_solve(self._c, iterations, byref(options))
         return self._verdict(result)
 
-    def solve_begin(self, iterations=20, callback=None, **options):
-        """Begins a solve in frames (gproj_solve_begin): while form.solve_is_on: form.solve_advance(0.01)."""
+    def solve_begin(self, iterations=None, callback=None, **options):
+        """Begins a solve in frames (gproj_solve_begin): while form.solve_is_on: form.solve_advance(0.01). Arguments as in
+        solve."""
+        iterations = _limit(iterations, options)
         options, callback = _solve_options(callback, options)
         before, self._c.frames = self._c.frames, [self._c.frames, callback]
         error = _Error()
@@ -1673,8 +1681,8 @@ class Form(_Sticky):
                         supports=None, slides=None):
         """Forces w in the edges balance the loads f: sum_j w_ij (v_i - v_j) + f_i = 0, see >>api-statics.
 
-        Loads as in gproj_loads; `supports`: vertices (None: the boundary), `slides`: for each of them the free axes, sums of
-        1 (x), 2 (y), 4 (z)."""
+        Loads as in gproj_loads; `supports`: vertices (None, or none: those of the boundary), `slides`: for each that is
+        given the free axes, sums of 1 (x), 2 (y), 4 (z)."""
         mesh = self.mesh
         edge_density = _beside(edge_density, mesh.edge_count, "edge_density")
         if point_load is not None:
@@ -1684,6 +1692,8 @@ class Form(_Sticky):
             if not len(supports):
                 raise ValueError("slides: there are no supports that they belong to")
             slides = np.ascontiguousarray(np.broadcast_to(_integers(slides, "slides", np.uint8), (len(supports),)))
+        if not len(supports):
+            supports = np.unique(mesh.origin[mesh.face < 0])
         loads = _Loads(density=density, edge_density=_address(edge_density), area_load=area_load, snow=snow,
                        point_load=_address(point_load))
         held = _Supports(count=len(supports), vertex=_address(supports), slides=_address(slides))
