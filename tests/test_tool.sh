@@ -815,6 +815,12 @@ for colour in planarity area parallelogram bend; do
     run grid.obj -o colour.obj --planar --picture colour-$colour.svg --colour $colour
     [ $status -eq 0 ] && [ "$(grep -c '<path' colour-$colour.svg)" -ge 64 ] && pass || fail "--colour $colour"
 done
+# Thin triangles around one vertex: each is in few of the cells that its box has (else this takes minutes).
+awk 'BEGIN { n = 6000; print "v 0 0 1"; for (i = 0; i < n; i++) printf "v %.9f %.9f 0\n", cos(6.28318530718 * i / n), sin(6.28318530718 * i / n)
+    for (i = 0; i < n; i++) print "f 1", i + 2, (i + 1) % n + 2 }' >hub.obj
+timeout 60 "$tool" hub.obj -o new.obj --fix 0 --closeness 0 --picture hub.svg --quiet && [ "$(grep -c '<path d' hub.svg)" -ge 6000 ] && pass ||
+    fail "a picture of a hub with many triangles"
+rm -f new.obj
 run grid.obj -o titled.obj --planar --picture titled.svg --title 'Flat & <fair>'
 grep -q '<title>Flat &amp; &lt;fair&gt;</title>' titled.svg && pass || fail "--title"
 grep -q 'areas of the faces' colour-area.svg && pass || fail "--colour area has no legend"
