@@ -505,6 +505,11 @@ const tests = {
         const command = await run(() => asCommand()), strings = await run(() => [cString('a\n1"b'), cString('a?\\b')]);
         const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: work, encoding: 'utf8'});
         check(command.includes('--reference') && told.status === 0, 'of an odd name the command says', told.stderr, command);
+        fs.writeFileSync(path.join(work, 'curves.obj'), 'v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 9 9 9\nl 5 1\nl 1 2 3 4 1\n');
+        await upload(path.join(work, 'curves.obj'));
+        await until(() => document.body.dataset.mesh === 'curves.obj' || document.body.dataset.error, 'a filled curve');
+        check(await run(() => mesh.faces > 0 && mesh.edges > 3 && opened.name === 'curves.obj'),
+            'of an open curve and a closed one the page says', await run(() => document.body.dataset.error));
         check(strings[0] === '"a\\0121\\"b"' && strings[1] === '"a\\?\\\\b"', 'odd names in C are', strings);
     },
     async what_is_no_mesh_is_refused() {

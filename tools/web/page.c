@@ -155,11 +155,14 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
     for (int32_t e = 0; e < mesh->edge_count; ++e) page.opened.longest = fmax(page.opened.longest, edge_length(e));
 }
 
-/* Fills the first polyline of a mesh without faces with quads. Corners are found, or `corners` points at equal
-   numbers. */
+/* Fills the first closed polyline of a mesh without faces, else its first one, with quads. Corners are found, or `corners`
+   points at equal numbers. */
 static gproj_mesh *fill(const gproj_mesh *curve, int32_t corners, gproj_error *error) {
-    int32_t count = curve->polyline_start[1], *corner = NULL, at;
-    const int32_t *vertex = curve->polyline_vertex;
+    const int32_t *start = curve->polyline_start, *vertex = curve->polyline_vertex;
+    int32_t which = 0, count, *corner = NULL, at;
+    while (which < curve->polyline_count && vertex[start[which]] != vertex[start[which + 1] - 1]) ++which;
+    if (which == curve->polyline_count) which = 0;
+    vertex += start[which], count = start[which + 1] - start[which];
     double *point = malloc(3 * sizeof *point * (size_t)(count + 1));
     gproj_fill_options options = {0};
     gproj_mesh *mesh = NULL;
