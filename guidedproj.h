@@ -19,7 +19,8 @@
      - invent freedom: constraints that contradict each other end with a verdict that says so, not with a mesh;
      - treat meshes that are no orientable manifolds: they are refused with a sentence that names the place.
 
-   A FIRST PROGRAM (put this into one C or C++ file of your program, and plain #includes into the others)
+   A FIRST PROGRAM (build it with cc -O2 roof.c -lm; of several C or C++ files one has the #define, the others only the
+   #include)
 
      #define GUIDEDPROJ_IMPLEMENTATION
      #include "guidedproj.h"
@@ -656,6 +657,8 @@ typedef struct gproj_group_info {
     gproj_kind kind;
     gproj_place place;
     gproj_schedule schedule;
+    double weight; /* in the last iteration, decay included: 0 once the schedule has ended, or wishes that guide have;
+                      nearest: that of wishes is scaled, of all alike */
     int32_t rows;
     double max;            /* largest |phi| */
     double rms;            /* root mean square of phi */
@@ -1639,9 +1642,9 @@ typedef struct gproj_loads {
                                    0 on vertices without edges that are no supports */
 } gproj_loads;
 
-/* `count` vertices are supports. slides[k]: the axes along which support k slides freely and gives no reaction (a
-   roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes forces; it may still move:
-   see gproj_add_fixed and gproj_add_gliding_boundary. */
+/* `count` vertices are supports; 0: none, and nothing carries. slides[k]: the axes along which support k slides freely
+   and gives no reaction (a roller), the sum of 1 for x, 2 for y, 4 for z; NULL: none, all are pinned. A support takes
+   forces; it may still move: see gproj_add_fixed and gproj_add_gliding_boundary. */
 typedef struct gproj_supports {
     int32_t count;
     const int32_t *vertex;
@@ -1666,8 +1669,8 @@ GPROJ_API int32_t gproj_add_stress_bounds(gproj_form *form, int32_t count, const
 GPROJ_API int32_t gproj_add_force_fairness(gproj_form *form, double weight);
 
 /* Forces and loads as they are, and forces as a start. `error` may be NULL; a refused call changes nothing, and the
-   form goes on: GPROJ_ERROR_STATE without equilibrium, _ARGUMENT without a form or an array, _NUMBER for numbers that
-   are not finite and positions that a solve would refuse, _MEMORY, or the form's error.
+   form goes on: GPROJ_ERROR_STATE without equilibrium (gproj_get_forces gives zeros), _ARGUMENT without a form or an
+   array, _NUMBER for numbers that are not finite and positions that a solve would refuse, _MEMORY, or the form's error.
 
    The force densities of all edges, edge_count numbers; zeros before the first solve and without equilibrium. */
 GPROJ_API gproj_code gproj_get_forces(const gproj_form *form, double *densities, gproj_error *error);
@@ -1806,8 +1809,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag);
        }
        result = gproj_drag_end(drag);
 
-   After gproj_solve_stop, or another solve, which is refused meanwhile, gproj_drag_end leaves the mesh as it is:
-   GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
+   After gproj_solve_stop, or another solve, which is refused but ends the release, gproj_drag_end leaves the mesh as it
+   is: GPROJ_CANCELLED. False: nothing begins, because the release is on already, or the form has an error, of which
    gproj_drag_end tells. A state saved before the end has the release's weights. */
 GPROJ_API bool gproj_drag_release(gproj_drag *drag);
 /* Puts the form back to its state before the drag, bit for bit, and destroys the drag. If groups or rows were added
@@ -8194,6 +8197,7 @@ GPROJ_API gproj_group_info gproj_system_group_info(const gproj_system *s, int32_
     info.kind = g->kind;
     info.place = g->place;
     info.schedule = g->schedule;
+    info.weight = g->weight;
     info.rows = g->row_count;
     for (r = 0; r < g->row_count; ++r) {
         double phi = gproji_magnitude(gproji_counted(g, g->row[r].phi));
@@ -24836,8 +24840,8 @@ GPROJ_API gproj_result gproj_drag_end(gproj_drag *drag) {
             result.outcome = GPROJ_CANCELLED;
             gproji_format(
                 result.message, sizeof result.message,
-                "cancelled: the release was stopped after %d iterations, and the mesh is as the last one left it",
-                result.iterations);
+                "cancelled: the release was stopped after %d iteration%s, and the mesh is as the last one left it",
+                result.iterations, result.iterations == 1 ? "" : "s");
         }
         form->solve.finished = false;
         gproji_schedule_release(drag, false);

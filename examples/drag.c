@@ -77,6 +77,7 @@ int main(int count, char **argument) { /* any argument: times, too */
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     gproj_result result;
 
+    if (!mesh) return puts(gproj_code_string(GPROJ_ERROR_MEMORY)), 1;
     gproj_mesh_save(mesh, "drag_start.obj", NULL);
     gproj_add_planarity(form, 1);
     gproj_add_fixed_corners(form, 1);

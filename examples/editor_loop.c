@@ -92,6 +92,7 @@ int main(void) {
     const char *const *next = script;
     e.mesh = make_grid(SIDE, SIDE, roof, NULL);
     e.form = gproj_form_create(e.mesh, &host);
+    if (!e.mesh) return puts(gproj_code_string(GPROJ_ERROR_MEMORY)), 1;
     gproj_mesh_save(e.mesh, "editor_start.obj", NULL);
     gproj_add_planarity(e.form, 1);
     gproj_add_fixed_corners(e.form, 1);

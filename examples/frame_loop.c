@@ -98,7 +98,7 @@ int main(void) {
     gproj_handles handles = {1, NULL, &vertex, NULL, NULL};
     gproj_drag *drag;
     double from[3], to[3], worst = 0;
-    gproj_mesh_save(mesh, "frame_start.obj", NULL);
+    if (!mesh || gproj_mesh_save(mesh, "frame_start.obj", NULL)) return puts("no memory, or no place for the mesh"), 1;
     gproj_add_planarity(form, 1), gproj_add_fixed_corners(form, 1);
     gproj_solve(form, 20, NULL);
     make_indices(mesh);

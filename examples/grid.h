@@ -6,7 +6,9 @@
 #ifndef EXAMPLES_GRID_H
 #define EXAMPLES_GRID_H
 
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 static gproj_mesh *make_quads(int32_t rows, int32_t columns, bool closed,
                               void (*place)(int32_t i, int32_t j, double p[3]), gproj_error *error) {
@@ -26,6 +28,10 @@ static gproj_mesh *make_quads(int32_t rows, int32_t columns, bool closed,
                 c[3] = i * across + right, c[2] = c[3] + across;
             }
         mesh = gproj_mesh_create((rows + 1) * across, position, faces, degree, corner, NULL, error);
+    } else if (error) {
+        memset(error, 0, sizeof *error);
+        error->code = GPROJ_ERROR_MEMORY, error->index = -1;
+        snprintf(error->message, sizeof error->message, "%s", gproj_code_string(GPROJ_ERROR_MEMORY));
     }
     free(position), free(degree), free(corner);
     return mesh;

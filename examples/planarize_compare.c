@@ -52,7 +52,7 @@ static void refresh_cubic(void *user, gproj_system *system, int32_t group, const
 static void guided_projection(const gproj_mesh *roof, bool cubic, gproj_measures *measures) {
     gproj_group group = {"det", GPROJ_CONSTRAINT, false, GPROJ_PLACE_FACE, gproj_keep(1), refresh_cubic, NULL};
     int32_t steps, number, f, i;
-    for (steps = 0; steps <= STEPS; ++steps) {
+    for (steps = 0; roof && steps <= STEPS; ++steps) {
         gproj_mesh *mesh = gproj_mesh_copy(roof, NULL, NULL);
         gproj_form *form = gproj_form_create(mesh, NULL);
         number = cubic ? gproj_system_add_group(gproj_form_system(form), &group) : gproj_add_planarity(form, 1);
@@ -82,7 +82,7 @@ static void local_global(const gproj_mesh *roof, gproj_measures *measures) {
             for (k = 0; k < 4 && corner(f / 4, f % 4) == v; ++k)
                 if ((row[entries] = corner(f / 4, k)) >= v) value[entries++] = k == f % 4 ? 0.75 : -0.25;
     gproj_cholesky_analyse(cholesky, POINTS, start, row, NULL), gproj_cholesky_factor(cholesky, value);
-    for (steps = 0; steps <= STEPS; ++steps) {
+    for (steps = 0; mesh && steps <= STEPS; ++steps) {
         measures[steps] = gproj_measure(mesh, roof->position, NULL);
         for (k = 0; k < 3 * POINTS; ++k) move[k] = 0;
         for (f = 0; f < QUADS; ++f) { /* the vectorial area n is across both diagonals, n'(b - a)/|n| their distance */
@@ -102,18 +102,18 @@ int main(void) {
     const gprojx_curve curve[3] = {{"A: guided projection, normals as variables", "#c0392b", STEPS + 1, delta[0]},
                                    {"B: guided projection, cubic", "#d68910", STEPS + 1, delta[1]},
                                    {"C: local-global projection", "#2471a3", STEPS + 1, delta[2]}};
-    gproj_measures m[3][STEPS + 1];
+    static gproj_measures m[3][STEPS + 1];
     gproj_mesh *roof = make_roof();
     FILE *file = fopen("planarize_compare.svg", "w");
     int step, k;
     guided_projection(roof, false, m[0]), guided_projection(roof, true, m[1]), local_global(roof, m[2]);
     puts("    A: delta  sigma      B: delta  sigma      C: delta  sigma");
-    for (step = 0; step <= STEPS; ++step)
+    for (step = 0; roof && step <= STEPS; ++step)
         for (k = 0; k < 3; ++k) {
             delta[k][step] = m[k][step].diagonal_max;
             if (k == 0) printf("%3d", step);
             printf("   %.1e %.4f%s", fmax(delta[k][step], 1e-9), m[k][step].deviation_max, k == 2 ? "\n" : "  ");
         }
     if (file) gprojx_plot(file, "Distance of the diagonals, in mean edge lengths", 3, curve), fclose(file);
-    return gproj_mesh_destroy(roof), file ? 0 : 1;
+    return gproj_mesh_destroy(roof), roof && file ? 0 : 1;
 }

@@ -43,6 +43,7 @@ int main(void) {
     gproj_result result;
     int32_t i;
     if (!mesh) return puts(error.message), 1;
+    if (!start) return puts(gproj_code_string(GPROJ_ERROR_MEMORY)), 1;
     gproj_mesh_save(mesh, "self_supporting_start.obj", NULL);
     for (i = 0; i < AROUND; ++i) support[i] = i, support[AROUND + i] = ALONG * AROUND + i;
     loads.area_load = 1;

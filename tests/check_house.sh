@@ -15,6 +15,7 @@ clean 'blanks at the end of a line' "$(grep -nE '[[:blank:]]+$' /dev/null $texts
 clean 'CR at the end of a line' "$(grep -nl $'\r$' /dev/null $texts)"
 clean 'tabs in C' "$(grep -n $'\t' /dev/null $(grep -E '\.[ch]$' <<<"$texts"))"
 clean 'C lines of more than 130 columns' "$(LC_ALL=C.UTF-8 grep -nE '^.{131,}' /dev/null $(grep -E '\.[ch]$' <<<"$texts"))"
+clean 'prose of more than 130 columns' "$(LC_ALL=C.UTF-8 grep -nE '^[^|!].{130,}' /dev/null $(grep -E '\.md$' <<<"$texts"))"
 clean 'characters beyond ASCII in the header' "$(LC_ALL=C grep -nP '[^\x00-\x7f]' guidedproj.h)"
 clean 'the header does not end with its licence or name it' "$(grep -qiE 'licen[cs]e|public domain' guidedproj.h || echo 'no word of a licence')"
 for file in guidedproj.h $(grep -E '\.[ch]$' <<<"$texts"); do

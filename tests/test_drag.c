@@ -564,7 +564,9 @@ GPROJT_TEST(handles_against_what_must_hold) {
     GPROJT_REQUIRE(drag);
     for (move = 1; move <= 60; ++move) {
         for (k = 0; k < 6; ++k)
-            place[k] = start[3 * which[k / 3] + k % 3] + fmin(move / 30.0, 1) * (k % 3 == 2 ? 0.3 : k < 3 ? 0.25 : -0.2);
+            place[k] = start[3 * which[k / 3] + k % 3] + fmin(move / 30.0, 1) * (k % 3 == 2 ? 0.3
+                                                                                 : k < 3    ? 0.25
+                                                                                            : -0.2);
         GPROJT_CHECK(gproj_drag_move(drag, place) == GPROJ_OK && gproj_drag_residual(drag) <= 1);
     }
     gproj_drag_cancel(drag);
@@ -690,8 +692,7 @@ GPROJT_TEST(a_wild_move_leaves_no_trace) {
         double *after[2] = {NULL, NULL};
         gproj_drag_info info[2];
         for (wild = 0; wild < 2; ++wild) {
-            gprojt_stage stage =
-                gprojt_set_stage(gprojt_roof(6, 0.05), way < 2 ? GPROJT_PLANAR : GPROJT_GLIDING, NULL);
+            gprojt_stage stage = gprojt_set_stage(gprojt_roof(6, 0.05), way < 2 ? GPROJT_PLANAR : GPROJT_GLIDING, NULL);
             int32_t v = gprojt_middle(stage.mesh), group;
             gproj_handles handles = gprojt_vertex_handles(1, &v);
             gproj_drag_options options;
@@ -713,8 +714,7 @@ GPROJT_TEST(a_wild_move_leaves_no_trace) {
             gprojt_pull(&stage, drag, v, 0.25 * stage.edge);
             after[wild] = gprojt_keep(stage.mesh), info[wild] = gproj_drag_get_info(drag);
             if (wild && way < 2) GPROJT_CHECK(gprojt_unmoved(stage.mesh, after[0]));
-            for (i = 0; i < 3 * stage.mesh->vertex_count; ++i)
-                GPROJT_CHECK(fabs(after[wild][i] - after[0][i]) < 1e-10);
+            for (i = 0; i < 3 * stage.mesh->vertex_count; ++i) GPROJT_CHECK(fabs(after[wild][i] - after[0][i]) < 1e-10);
             gproj_drag_cancel(drag);
             gprojt_clear_stage(&stage);
         }
@@ -1406,7 +1406,7 @@ GPROJT_TEST(releases_end_with_other_solves) {
         gprojt_pull(&stage, drag, v, 0.4);
         GPROJT_CHECK(gproj_drag_release(drag));
         gproj_solve_advance(stage.form, 0);
-        gproj_solve_advance(stage.form, 0);
+        if (way > 0) gproj_solve_advance(stage.form, 0);
         now = gprojt_keep(stage.mesh);
         if (way < 2) {
             result = gproj_solve(stage.form, 10, &options);
@@ -1416,8 +1416,9 @@ GPROJT_TEST(releases_end_with_other_solves) {
         }
         GPROJT_CHECK(!gproj_solve_is_on(stage.form));
         result = gproj_drag_end(drag);
-        GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == 2 && result.residual > 0);
-        GPROJT_CHECK(strstr(result.message, "after 2 iterations") && gprojt_unmoved(stage.mesh, now));
+        GPROJT_CHECK(result.outcome == GPROJ_CANCELLED && result.iterations == (way ? 2 : 1) && result.residual > 0);
+        GPROJT_CHECK(strstr(result.message, way ? "after 2 iterations, " : "after 1 iteration, "));
+        GPROJT_CHECK(gprojt_unmoved(stage.mesh, now));
         free(now);
         gprojt_clear_stage(&stage);
     }

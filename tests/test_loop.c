@@ -956,6 +956,7 @@ static void gprojt_check_energies(gproj_schedule schedule, int32_t iterations, i
         double weight = now.weight * (now.decay > 0 ? pow(now.decay, n) : 1);
         if (now.last > 0 && n > now.last) weight = 0;
         GPROJT_NEAR(watch.seen[n - 1].energy, weight * weight, 1e-15);
+        if (n == watch.count) GPROJT_NEAR(gproj_system_group_info(s, 2).weight, weight, 1e-15);
     }
     gproj_system_destroy(s);
 }
@@ -1408,7 +1409,8 @@ GPROJT_TEST(stiffness_of_the_next_step) {
         gprojt_add_role(s, "metric", GPROJ_WISH, GPROJI_METRIC);
         gprojt_add_linear(s, 0, 0, 1, -1, 0);
         gprojt_measure(s, 1, 1, 1);
-        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 1, false, 20, NULL) && loop.stiff && gproji_compile(s, false) == GPROJ_OK);
+        GPROJT_REQUIRE(gproji_begin_loop(&loop, s, 1, false, 20, NULL) && loop.stiff &&
+                       gproji_compile(s, false) == GPROJ_OK);
         s->solving = true;
         gproji_begin_run(&loop);
         gproji_stiffen(&loop, c->before);

@@ -648,6 +648,11 @@ def test_statics():
     form.add_compression()
     form.add_fixed_boundary()
     densities, residuals = form.find_forces()
+    for supports in None, []:
+        usual = Form(V, F)
+        usual.add_equilibrium(area_load=1, snow=0.5, density=0.1, supports=supports)
+        usual.add_compression()
+        check((usual.find_forces()[0] == densities).all(), "the boundary carries where supports are", supports)
     check(densities.min() >= 0 and residuals.shape == (81,) and form.find_imbalance().shape == (81, 3), "forces found")
     result = form.solve(60)
     forces = form.measure_forces()
@@ -688,6 +693,9 @@ def test_frames_and_states():
     raises(Error, Form(*dome()).restore_state, state, code=Code.ERROR_ARGUMENT)
     raises(Error, frames.restore_state, state[:-3], code=Code.ERROR_SYNTAX)
     raises(Error, frames.solve_begin, 20, tolerance=-1.0, code=Code.ERROR_ARGUMENT)
+    limits = [guidedproj._limit(given, {"smooth": smooth, "nearest": nearest})
+              for given, smooth, nearest in [(7, 1, 1), (None, 0, 0), (None, 1, 0), (None, 1, 1)]]
+    check(limits == [7, 20, 300, 60], "iterations that are allowed", limits)
     frames.solve_begin(20, lambda iteration: 1 // 0)
     raises(ZeroDivisionError, frames.solve_advance)
     raises(Error, frames.solve_memory, code=Code.ERROR_STATE)
@@ -726,9 +734,10 @@ def test_drag():
     check(drag.end().outcome == Outcome.CONVERGED, "the end of frames")
     vertices, weights = form.find_reach(40, 2.5)
     check(vertices[0] == 40 and weights[0] == 1 and len(vertices) > 5, vertices, weights)
-    drag = form.drag(vertices, weights, start=[0, len(vertices)], position=[form.V[40]], residual_bound=0.1)
-    drag.move([form.V[40] + [0, 0, 0.3]])
-    raises(ValueError, drag.move, [[0, 0]])
+    drag = form.drag(vertices, weights, start=[0, len(vertices)], position=form.V[40], residual_bound=0.1)
+    drag.move(form.V[40] + [0, 0, 0.3])  # of a single handle
+    for positions in [[0, 0]], [0, 0], [[0, 0, 0], [0, 0, 0]], 0:
+        raises(ValueError, drag.move, positions)
     raises(Error, drag.move, [[0, 0, math.nan]], code=Code.ERROR_NUMBER)
     drag.cancel()
     raises(Error, drag.cancel, code=Code.ERROR_STATE)

@@ -102,6 +102,7 @@ GPROJT_TEST(group_info) {
     int32_t r;
     GPROJT_CHECK(!strcmp(info.name, "by hand") && info.kind == GPROJ_CONSTRAINT && info.place == GPROJ_PLACE_VERTEX);
     GPROJT_CHECK(info.rows == GPROJT_HAND_ROWS && info.schedule.weight == 1 && info.max == 0);
+    GPROJT_CHECK(info.weight == 0);
     gproj_system_solve(s, 0, NULL);
     info = gproj_system_group_info(s, 0);
     for (r = 0; r < GPROJT_HAND_ROWS; ++r) squares += gprojt_hand_rows[r].value * gprojt_hand_rows[r].value;

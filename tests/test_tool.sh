@@ -332,12 +332,29 @@ assert close(r['measures']['deviation_rms'], float(m['deviation_rms']), 1e-5)
 assert r['measures']['turned_faces'] == int(m['turned'])
 assert r['measures']['folded_edges'] == int(m['folded_after'])
 assert set(r['seconds']) >= {'set_up', 'analysis', 'assembly', 'factorisation', 'solve', 'total'}
+r = json.load(open('guided.json'))
+wish = [[g['weight'] for g in i['groups'] if g['name'] == 'fairness'][0] for i in r['iterations']]
+assert len(wish) > 4 and all((w == 0.2) == (n < 4) and (w > 0) == (i['energy'] > 0)
+                              for n, (w, i) in enumerate(zip(wish, r['iterations'])))
+assert not any('row' in g for g in r['groups']) and 'vertex' in r['groups'][1]
+r = json.load(open('volume.json'))
+assert r['result']['worst'] == {'group': 'volume'}
 PY
+    run grid.obj -o guided.obj --planar --plain --fairness 0.2 --fix boundary --iterations 8 --report guided.json
+    run grid.obj -o volume.obj --volume x1.3 --fix boundary --iterations 1 --report volume.json
     if python3 report.py 2>report.txt; then pass; else fail "the report: $(tail -n 3 report.txt | tr '\n' ' ')"; fi
     cp grid.obj 'odd "name\.obj'
     run 'odd "name\.obj' -o 'out <&>.obj' --planar --report odd.json --picture odd.svg
     check "a path with quotes in the report" python3 -m json.tool odd.json
     check "a path with <&> in the picture" python3 -c "import xml.dom.minidom as m; m.parse('odd.svg')"
+    # Bytes that only look like UTF-8 (a surrogate, too long, too large), and a character that XML does not have.
+    for bytes in '\355\240\200' '\340\200\200' '\360\217\277\277' '\364\220\200\200' '\357\277\276' '\357\277\277'; do
+        odd=odd$(printf "$bytes").obj
+        run grid.obj -o "$odd" --planar --report odd.json --picture odd.svg --title "a$(printf "$bytes")b"
+        check "the picture with the title a${bytes}b" python3 -c "import xml.dom.minidom as m; m.parse('odd.svg')"
+        check "the report with the path odd$bytes" python3 -m json.tool odd.json
+        rm -f "$odd"
+    done
 else
     skip "JSON and XML (python3 is not there)"
 fi
@@ -798,6 +815,12 @@ for colour in planarity area parallelogram bend; do
     run grid.obj -o colour.obj --planar --picture colour-$colour.svg --colour $colour
     [ $status -eq 0 ] && [ "$(grep -c '<path' colour-$colour.svg)" -ge 64 ] && pass || fail "--colour $colour"
 done
+# Thin triangles around one vertex: each is in few of the cells that its box has (else this takes minutes).
+awk 'BEGIN { n = 6000; print "v 0 0 1"; for (i = 0; i < n; i++) printf "v %.9f %.9f 0\n", cos(6.28318530718 * i / n), sin(6.28318530718 * i / n)
+    for (i = 0; i < n; i++) print "f 1", i + 2, (i + 1) % n + 2 }' >hub.obj
+timeout 60 "$tool" hub.obj -o new.obj --fix 0 --closeness 0 --picture hub.svg --quiet && [ "$(grep -c '<path d' hub.svg)" -ge 6000 ] && pass ||
+    fail "a picture of a hub with many triangles"
+rm -f new.obj
 run grid.obj -o titled.obj --planar --picture titled.svg --title 'Flat & <fair>'
 grep -q '<title>Flat &amp; &lt;fair&gt;</title>' titled.svg && pass || fail "--title"
 grep -q 'areas of the faces' colour-area.svg && pass || fail "--colour area has no legend"

@@ -477,6 +477,41 @@ const tests = {
         const said = await complaints();
         check(said.length === 1 && /once/.test(said[0]), 'of one exception the console says', said);
     },
+    /* A face that is not convex, from a corner that does not see all of it, and a vertex without a face, far away. */
+    async odd_meshes_are_shown() {
+        const file = path.join(work, "odd$&'s.obj");
+        fs.writeFileSync(file, 'v 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv 0 0 0\nv 0 0 1e6\nv 3 0 1\nv 3 1 1\n' +
+            'f 1 2 3 4 5 6\nf 1 8 9 2\n');
+        await open('#mesh=Roof&planar=1&reference=0.1');
+        await upload(file);
+        await until(() => document.body.dataset.mesh.startsWith('odd') && !unseen && pictured, 'an odd mesh');
+        const [area, vector, size] = await run(() => {
+            let area = 0;
+            const vector = [0, 0, 0], {corners} = mesh, [low, high] = drawing.extent();
+            for (let k = 0; k < corners.length; k += 6) {
+                if (corners[k + 1] !== 0) continue;
+                const [p, q, r] = [0, 2, 4].map(c => drawing.place(corners[k + c]));
+                const cross = [0, 1, 2].map(i => [(i + 1) % 3, (i + 2) % 3]).map(
+                    ([u, v]) => (q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u]));
+                area += Math.hypot(...cross);
+                cross.forEach((x, i) => { vector[i] += x; });
+            }
+            return [area, Math.hypot(...vector), Math.max(high[0] - low[0], high[1] - low[1])];
+        });
+        check(Math.abs(area / vector - 1) < 1e-5, 'a face that is not convex is painted with the area', area, vector);
+        check(size > 200, 'beside a vertex without a face, far away, the mesh is shown with pixels', size);
+        const steps = await run(() => [1, 1, 1, 1, 1, 1, 1, -1, -1].map(by => (selectNext(by), selected)));
+        check(String(steps) === '0,1,2,3,4,5,7,5,4', 'N and P choose the vertices', steps);
+        const command = await run(() => asCommand()), strings = await run(() => [cString('a\n1"b'), cString('a?\\b')]);
+        const told = spawnSync('bash', ['-c', command.replace('tools/guidedproj', '"$0"'), tool], {cwd: work, encoding: 'utf8'});
+        check(command.includes('--reference') && told.status === 0, 'of an odd name the command says', told.stderr, command);
+        fs.writeFileSync(path.join(work, 'curves.obj'), 'v 0 0 0\nv 4 0 0\nv 4 2 0\nv 0 2 0\nv 9 9 9\nl 5 1\nl 1 2 3 4 1\n');
+        await upload(path.join(work, 'curves.obj'));
+        await until(() => document.body.dataset.mesh === 'curves.obj' || document.body.dataset.error, 'a filled curve');
+        check(await run(() => mesh.faces > 0 && mesh.edges > 3 && opened.name === 'curves.obj'),
+            'of an open curve and a closed one the page says', await run(() => document.body.dataset.error));
+        check(strings[0] === '"a\\0121\\"b"' && strings[1] === '"a\\?\\\\b"', 'odd names in C are', strings);
+    },
     async what_is_no_mesh_is_refused() {
         await choose('Roof');
         const before = await saved(), broken = path.join(work, 'broken.obj'), noise = path.join(work, 'noise.obj');

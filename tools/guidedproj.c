@@ -1649,7 +1649,8 @@ static const tool_option options[] = {
      "the numbers of edges of the curve's sides, from corner to corner (by its mean edge if left out)", set_sides,
      SETS(sides), .needs = &a_curve},
     {"diagonals", "",
-     "the mesh along the diagonals: a vertex amid each edge, a face for each face and for each vertex; for meshes whose "
+     "the mesh along the diagonals: a vertex amid each edge, a face for each face and for each vertex; for meshes "
+     "whose "
      "edges follow the asymptotic directions of a saddle-shaped surface, in which faces cannot become flat",
      set_flag, SETS(diagonals), .kind = BEGINNING},
     {"subdivide", "N[,loop]",
@@ -1669,7 +1670,8 @@ static const tool_option options[] = {
     {"state", "FILE",
      "where FILE exists, the work goes on from there: it was written with the same input and options, but for "
      "outputs, --time-limit, --iterations and --threads. At the end the state is written to it. With --time-limit or "
-     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome \"time out\" "
+     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome \"time "
+     "out\" "
      "in --report, until it has ended. Then further runs take no step and give the same verdict. Such work is one "
      "attempt; without --state others may follow one that ends badly",
      set_output, SETS(output[OUTPUT_STATE])},
@@ -1920,7 +1922,7 @@ static int similar_option(const char *name, size_t size) {
     for (i = 0; i < OPTION_COUNT; ++i) {
         const char *known = options[i].name;
         int distance = edit_distance(name, size, known);
-        if (size >= 3 && strncmp(name, known, size) == 0) distance = 1; /* cut short */
+        if (size >= 3 && strncmp(name, known, size) == 0) distance = 1;              /* cut short */
         if (size >= 5 && strncmp(name, known, 4) == 0 && distance > 2) distance = 2; /* another ending */
         if (distance < least) best = i, least = distance;
     }
@@ -2064,8 +2066,7 @@ static bool check_output(tool *t, int output, const char *option) {
         memcpy(ending, at, 4);
         if (gprojx_has_ending(path, ending)) break;
     }
-    if (!at)
-        return fail(t, EXIT_USAGE, "the %s '%s' must end in %s", rules[output].what, path, rules[output].endings);
+    if (!at) return fail(t, EXIT_USAGE, "the %s '%s' must end in %s", rules[output].what, path, rules[output].endings);
     return t->encoding != GPROJX_BIG || strcmp(ending, ".stl") != 0 ||
            fail(t, EXIT_USAGE, "--encoding big is not for STL: '%s'", path);
 }
@@ -3064,7 +3065,9 @@ static void print_mesh(const tool *t) {
         printf("note: %ld boundary vertices are at the same place as others: the seams there are open, and their "
                "sides may come apart; --weld closes them\n",
                (long)t->seams);
-    if (mesh->isolated_count > 0) printf("note: %ld vertices belong to no face\n", (long)mesh->isolated_count);
+    if (mesh->isolated_count > 0)
+        printf("note: %ld %s to no face\n", (long)mesh->isolated_count,
+               mesh->isolated_count == 1 ? "vertex belongs" : "vertices belong");
 }
 
 static void print_offset(const tool *t) {

@@ -445,9 +445,9 @@ static void gprojx_overlap_add(const double *const a[3], const double *const b[3
     memcpy(sum->plane, plane_b, sizeof plane_b);
 }
 
-/* Does one side of a have all of b outside? (Convex neighbours end here.) */
-static bool gprojx_separated(const gprojx_painter *p, const gprojx_item *a, const gprojx_item *b) {
-    const gprojx_point *q = gprojx_outline(p, a), *r = gprojx_outline(p, b);
+/* Does one side of a have all of these points outside? (Convex neighbours end here.) */
+static bool gprojx_separated(const gprojx_painter *p, const gprojx_item *a, int32_t count, const gprojx_point *r) {
+    const gprojx_point *q = gprojx_outline(p, a);
     double sign = a->area < 0 ? -1 : 1;
     int32_t i, j;
     for (i = 0; i < a->count; ++i) {
@@ -456,9 +456,9 @@ static bool gprojx_separated(const gprojx_painter *p, const gprojx_item *a, cons
         for (j = 0; j < a->count; ++j)
             if (sign * gprojx_area(u, v, q[j].x) < -room) break;
         if (j < a->count) continue; /* not a side of a's hull */
-        for (j = 0; j < b->count; ++j)
+        for (j = 0; j < count; ++j)
             if (sign * gprojx_area(u, v, r[j].x) > room) break;
-        if (j == b->count) return true;
+        if (j == count) return true;
     }
     return false;
 }
@@ -470,7 +470,7 @@ static gprojx_overlap gprojx_compare(const gprojx_painter *p, const gprojx_item 
     int k;
     for (k = 0; k < 2; ++k)
         if (a->low[k] >= b->high[k] || b->low[k] >= a->high[k]) return sum;
-    if (gprojx_separated(p, a, b) || gprojx_separated(p, b, a)) return sum;
+    if (gprojx_separated(p, a, b->count, r) || gprojx_separated(p, b, a->count, q)) return sum;
     for (i = 0; i < a->count; ++i)
         for (j = 0; j < b->count; ++j) {
             const double *s[3], *t[3];
@@ -490,6 +490,18 @@ static void gprojx_cells(const gprojx_painter *p, const gprojx_item *item, int32
         range[2 * k] = (int32_t)gprojx_clamp(item->low[k] / p->cell_size, 0, most[k]);
         range[2 * k + 1] = (int32_t)gprojx_clamp(item->high[k] / p->cell_size, 0, most[k]);
     }
+}
+
+/* Is nothing of an item in this cell of its range? Long thin ones miss most. The cells at the border have no end. */
+static bool gprojx_misses(const gprojx_painter *p, const gprojx_item *item, int32_t x, int32_t y) {
+    gprojx_point corner[4];
+    int k;
+    if (x == 0 || y == 0 || x == p->columns - 1 || y == p->lines - 1) return false;
+    for (k = 0; k < 4; ++k) {
+        corner[k].x[0] = (x + k % 2) * p->cell_size;
+        corner[k].x[1] = (y + k / 2) * p->cell_size;
+    }
+    return gprojx_separated(p, item, 4, corner);
 }
 
 static void gprojx_add_arc(gprojx_painter *p, int32_t behind, int32_t front) {
@@ -530,7 +542,9 @@ static void gprojx_enter(gprojx_painter *p, int32_t index) {
     p->ahead.count = 0;
     for (y = range[2]; y <= range[3]; ++y)
         for (x = range[0]; x <= range[1]; ++x)
-            if (p->failed || !gprojx_meet_cell(p, index, y * p->columns + x)) return;
+            if (p->failed ||
+                (!gprojx_misses(p, gprojx_item_at(p, index), x, y) && !gprojx_meet_cell(p, index, y * p->columns + x)))
+                return;
     for (i = 0; i < p->ahead.count && !p->failed; ++i) {
         int32_t other = ((int32_t *)p->ahead.data)[i];
         if (other >= 0)
@@ -540,7 +554,9 @@ static void gprojx_enter(gprojx_painter *p, int32_t index) {
     }
     for (y = range[2]; y <= range[3]; ++y)
         for (x = range[0]; x <= range[1]; ++x) {
-            gprojx_link *link = (gprojx_link *)gprojx_push(p, &p->link, sizeof *link, 1);
+            gprojx_link *link;
+            if (gprojx_misses(p, gprojx_item_at(p, index), x, y)) continue;
+            link = (gprojx_link *)gprojx_push(p, &p->link, sizeof *link, 1);
             if (!link) return;
             link->item = index;
             link->next = p->cell[y * p->columns + x];
@@ -811,20 +827,22 @@ static void gprojx_put_attribute(FILE *file, const char *name, double x) {
     fputc('"', file);
 }
 
-/* Text with the characters that XML reserves, without control characters, and with ? for bytes that are not UTF-8. */
+/* Text with the characters that XML reserves, without control characters, and with ? for bytes that are not UTF-8 and
+   for U+FFFE and U+FFFF, which XML does not have. */
 static void gprojx_put_text(FILE *file, const char *text) {
-    size_t left = 0; /* bytes of the character under way */
-    for (; *text; ++text) {
-        if (left == 0) left = gprojx_utf8_size(text);
+    size_t size;
+    for (; *text; text += size ? size : 1) {
+        size = gprojx_utf8_size(text);
         if (*text == '&')
             fputs("&amp;", file);
         else if (*text == '<')
             fputs("&lt;", file);
         else if (*text == '>')
             fputs("&gt;", file);
+        else if (size == 0 || memcmp(text, "\xef\xbf\xbe", size) == 0 || memcmp(text, "\xef\xbf\xbf", size) == 0)
+            fputc('?', file);
         else if ((unsigned char)*text >= 32)
-            fputc(left == 0 ? '?' : *text, file);
-        left -= left > 0;
+            fwrite(text, 1, size, file);
     }
 }
 

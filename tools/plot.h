@@ -13,7 +13,7 @@
 
 /* value[i] belongs to iteration i = 0..count-1. Values below 1e-16 are drawn there. */
 typedef struct gprojx_curve {
-    const char *name, *colour; /* plain text without < and & */
+    const char *name, *colour; /* plain text without < and &, as titles */
     int count;
     const double *value;
 } gprojx_curve;

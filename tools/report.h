@@ -83,8 +83,7 @@ static bool gprojx_history_keep(gprojx_history *history, const gproj_form *form,
     for (i = 0; i < groups; ++i) {
         gproj_group_info info = gproj_system_group_info(system, i);
         group = &history->group[history->group_count++];
-        group->weight = info.schedule.last > 0 && iteration->number > info.schedule.last ? 0 : info.schedule.weight;
-        group->weight *= pow(info.schedule.decay, iteration->number);
+        group->weight = info.weight;
         group->norm = info.rms * sqrt((double)info.rows);
         group->max = info.max;
     }
@@ -103,11 +102,12 @@ static void gprojx_history_free(gprojx_history *history) {
 
 /* ---- parts of the report ---- */
 
-static const char *gprojx_place_name(gproj_place place) {
-    return place == GPROJ_PLACE_VERTEX ? "vertex"
-           : place == GPROJ_PLACE_EDGE ? "edge"
-           : place == GPROJ_PLACE_FACE ? "face"
-                                       : "row";
+/* Names an element, as "vertex": 7; nothing for rows that belong to none, such as that of a volume. */
+static void gprojx_report_element(gprojx_json *j, gproj_place place, int32_t element) {
+    if (element < 0) return;
+    if (place == GPROJ_PLACE_VERTEX) gprojx_json_integer(j, "vertex", element);
+    if (place == GPROJ_PLACE_EDGE) gprojx_json_integer(j, "edge", element);
+    if (place == GPROJ_PLACE_FACE) gprojx_json_integer(j, "face", element);
 }
 
 static const char *gprojx_outcome_name(gproj_outcome outcome) {
@@ -176,7 +176,7 @@ static void gprojx_report_groups(gprojx_json *j, gproj_system *system) {
         gprojx_json_integer(j, "rows", group.rows);
         gprojx_json_number(j, "norm", group.rms * sqrt((double)group.rows));
         gprojx_json_number(j, "max", group.max);
-        if (group.worst_row >= 0) gprojx_json_integer(j, gprojx_place_name(group.place), group.worst_element);
+        gprojx_report_element(j, group.place, group.worst_element);
         gprojx_json_close(j, '}');
     }
     gprojx_json_close(j, ']');
@@ -239,7 +239,7 @@ static void gprojx_report_result(gprojx_json *j, const gprojx_report *report) {
         gproj_group_info group = gproj_system_group_info(gproj_form_system(report->form), result->worst_group);
         gprojx_json_open(j, "worst", '{');
         gprojx_json_string(j, "group", group.name);
-        gprojx_json_integer(j, gprojx_place_name(group.place), result->worst_element);
+        gprojx_report_element(j, group.place, result->worst_element);
         gprojx_json_close(j, '}');
     }
     gprojx_json_open(j, "spoiled", '{');
@@ -252,7 +252,7 @@ static void gprojx_report_result(gprojx_json *j, const gprojx_report *report) {
     gprojx_json_integer(j, "spikes", spoiled->spikes);
     if (spoiled->total > 0) {
         gprojx_json_open(j, "first", '{');
-        gprojx_json_integer(j, gprojx_place_name(spoiled->place), spoiled->element);
+        gprojx_report_element(j, spoiled->place, spoiled->element);
         gprojx_json_close(j, '}');
     }
     gprojx_json_close(j, '}');

@@ -76,7 +76,7 @@ class OBJECT_OT_guided_projection(bpy.types.Operator):
     fairness: FloatProperty(name="Fairness", description="Wish for fair mesh lines", default=0, min=0, soft_max=1)
     closeness: FloatProperty(name="Closeness", description="Wish for closeness to the mesh", default=0, min=0, soft_max=1)
     smooth: BoolProperty(name="Smooth", description="Of all changes that do it, take the smoothest", default=True)
-    iterations: IntProperty(name="Iterations", description="At most", default=200, min=1, max=10000)
+    iterations: IntProperty(name="Iterations", description="At most", default=300, min=1, max=10000)
 
     @classmethod
     def poll(cls, context):

@@ -136,8 +136,8 @@ _Term = _struct("gproj_term", "int32 i, j; double a")
 _Progress = _struct("gproj_progress", "int32 iteration, iterations, unguided; bool tangential, trial")
 _Group = _struct("gproj_group", "string name; kind kind; bool global; place place; schedule schedule; "
                  "pointer refresh, refresh_user")
-_struct("gproj_group_info", "char[32] name; kind kind; place place; schedule schedule; int32 rows; double max, rms; "
-        "int32 worst_row, worst_element")
+_struct("gproj_group_info", "char[32] name; kind kind; place place; schedule schedule; double weight; int32 rows; "
+        "double max, rms; int32 worst_row, worst_element")
 _Iteration = _struct("gproj_iteration", "int32 number; double residual, merit, energy, step, epsilon, length; "
                      "int32 factorisations; double optimality; double[5] seconds")
 _SolveOptions = _struct("gproj_solve_options", "double tolerance, epsilon, time_budget; pointer on_iteration, user; "
@@ -1194,6 +1194,13 @@ def schedule(weight, decay=1.0, last=2**31 - 1):
     return _Schedule(weight, decay, last)
 
 
+def _limit(iterations, options):
+    """The iterations that a solve with these options is allowed, if none are given."""
+    if iterations is not None:
+        return iterations
+    return 60 if options.get("nearest") else 300 if options.get("smooth") else 20
+
+
 def _solve_options(callback, options):
     """The options, and the callback that they hold: always one, because Python notices Control-C there."""
 
@@ -1624,18 +1631,19 @@ class Form(_Sticky):
     def solve(self, iterations=None, callback=None, **options):
         """Solves (gproj_solve) and returns a record of gproj_result; the positions are then in form.V.
 
-        iterations: by default 60 if nearest, 200 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
+        iterations: by default 60 if nearest, 300 if smooth, else 20. callback(iteration) gets a record of gproj_iteration
         after each, and returns False to cancel. Options, as in gproj_solve_options: smooth, nearest, tolerance, epsilon,
         time_budget, skip_damping, skip_closeness, skip_guard. Raises Error only where the outcome is FAILED."""
-        if iterations is None:
-            iterations = 60 if options.get("nearest") else 200 if options.get("smooth") else 20
+        iterations = _limit(iterations, options)
         options, callback = _solve_options(callback, options)
         with self._c.calling(), _interruptible():
             result = _lib().gproj_solve(self._c, iterations, byref(options))
         return self._verdict(result)
 
-    def solve_begin(self, iterations=20, callback=None, **options):
-        """Begins a solve in frames (gproj_solve_begin): while form.solve_is_on: form.solve_advance(0.01)."""
+    def solve_begin(self, iterations=None, callback=None, **options):
+        """Begins a solve in frames (gproj_solve_begin): while form.solve_is_on: form.solve_advance(0.01). Arguments as in
+        solve."""
+        iterations = _limit(iterations, options)
         options, callback = _solve_options(callback, options)
         before, self._c.frames = self._c.frames, [self._c.frames, callback]
         error = _Error()
@@ -1673,8 +1681,8 @@ class Form(_Sticky):
                         supports=None, slides=None):
         """Forces w in the edges balance the loads f: sum_j w_ij (v_i - v_j) + f_i = 0, see >>api-statics.
 
-        Loads as in gproj_loads; `supports`: vertices (None: the boundary), `slides`: for each of them the free axes, sums of
-        1 (x), 2 (y), 4 (z)."""
+        Loads as in gproj_loads; `supports`: vertices (None, or none: those of the boundary), `slides`: for each that is
+        given the free axes, sums of 1 (x), 2 (y), 4 (z)."""
         mesh = self.mesh
         edge_density = _beside(edge_density, mesh.edge_count, "edge_density")
         if point_load is not None:
@@ -1684,6 +1692,8 @@ class Form(_Sticky):
             if not len(supports):
                 raise ValueError("slides: there are no supports that they belong to")
             slides = np.ascontiguousarray(np.broadcast_to(_integers(slides, "slides", np.uint8), (len(supports),)))
+        if not len(supports):
+            supports = np.unique(mesh.origin[mesh.face < 0])
         loads = _Loads(density=density, edge_density=_address(edge_density), area_load=area_load, snow=snow,
                        point_load=_address(point_load))
         held = _Supports(count=len(supports), vertex=_address(supports), slides=_address(slides))
@@ -1788,7 +1798,7 @@ class Drag(_Object):
     """Handles that are dragged while everything holds, see >>api-drag: made by form.drag.
 
         with form.drag([17]) as drag:      # released at the end, cancelled by an exception
-            drag.move([[x, y, z]])
+            drag.move([[x, y, z]])     # a row for each handle; of a single one also [x, y, z]
         print(drag.result.message)
     """
     _destroy = "gproj_drag_cancel"
@@ -1802,7 +1812,7 @@ class Drag(_Object):
             if count < 0 or start.max() > len(vertices):
                 raise ValueError("start: one entry more than handles is wanted, none beyond the number of vertices")
         weights = _beside(weights, len(vertices), "weights")
-        position = None if position is None else _doubles(position, (count, 3), "position")
+        position = None if position is None else self._places(position, count, "position")
         handles = _Handles(count=count, start=_address(start), vertex=_address(vertices), weight=_address(weights),
                            position=_address(position))
         options, error = _DragOptions(residual_bound=residual_bound, keep_wishes=keep_wishes), _Error()
@@ -1818,9 +1828,14 @@ class Drag(_Object):
                         Code.ERROR_STATE)
         return super()._c
 
+    @staticmethod
+    def _places(positions, count, what):
+        """k x 3 numbers, or 3 of a single handle."""
+        return _doubles(positions, (3,) if count == 1 and np.ndim(positions) == 1 else (count, 3), what)
+
     def move(self, positions):
         """Moves the handles to k x 3 positions, and form.V with them (gproj_drag_move)."""
-        positions, handle = _doubles(positions, (self.count, 3), "positions"), self._c
+        positions, handle = self._places(positions, self.count, "positions"), self._c
         with self._root.calling():
             code = _lib().gproj_drag_move(handle, positions.ctypes)
         if code != Code.OK:

@@ -1,7 +1,8 @@
 /* page.c - the C side of the interactive page: one mesh, one form and one drag, behind functions that take and give
    numbers. worker.js calls them; texts and arrays go through one block of memory, see page_block.
 
-   Coordinates that go to the page and come from it are relative: (position - centre) / radius of the opened mesh. */
+   Coordinates that go to the page and come from it are relative: (position - centre) / radius of the opened mesh, of its
+   vertices with a face. */
 #define GPROJ_STATIC
 #define GPROJ_NO_STDIO
 #include "../../guidedproj.h"
@@ -138,8 +139,9 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
     memcpy(original, mesh->position, bytes);
     memcpy(fixed_at, mesh->position, bytes);
     for (int k = 0; k < 3; ++k) {
-        low[k] = high[k] = original[k];
-        for (int32_t v = 1; v < mesh->vertex_count; ++v) {
+        low[k] = INFINITY, high[k] = -INFINITY;
+        for (int32_t v = 0; v < mesh->vertex_count; ++v) {
+            if (mesh->vertex_halfedge[v] < 0) continue; /* not seen, and maybe far away */
             low[k] = fmin(low[k], original[3 * v + k]);
             high[k] = fmax(high[k], original[3 * v + k]);
         }
@@ -153,11 +155,14 @@ static void adopt(gproj_mesh *mesh, double *original, double *fixed_at, double *
     for (int32_t e = 0; e < mesh->edge_count; ++e) page.opened.longest = fmax(page.opened.longest, edge_length(e));
 }
 
-/* Fills the first polyline of a mesh without faces with quads. Corners are found, or `corners` points at equal
-   numbers. */
+/* Fills the first closed polyline of a mesh without faces, else its first one, with quads. Corners are found, or `corners`
+   points at equal numbers. */
 static gproj_mesh *fill(const gproj_mesh *curve, int32_t corners, gproj_error *error) {
-    int32_t count = curve->polyline_start[1], *corner = NULL, at;
-    const int32_t *vertex = curve->polyline_vertex;
+    const int32_t *start = curve->polyline_start, *vertex = curve->polyline_vertex;
+    int32_t which = 0, count, *corner = NULL, at;
+    while (which < curve->polyline_count && vertex[start[which]] != vertex[start[which + 1] - 1]) ++which;
+    if (which == curve->polyline_count) which = 0;
+    vertex += start[which], count = start[which + 1] - start[which];
     double *point = malloc(3 * sizeof *point * (size_t)(count + 1));
     gproj_fill_options options = {0};
     gproj_mesh *mesh = NULL;
@@ -245,24 +250,57 @@ int32_t EXPORT(page_vertices) page_vertices(void) { return page.mesh->vertex_cou
 int32_t EXPORT(page_edges) page_edges(void) { return page.mesh->edge_count; }
 int32_t EXPORT(page_faces) page_faces(void) { return page.mesh->face_count; }
 
+/* Has a face no corner of more than 180 degrees, as seen along its vectorial area? */
+static bool is_convex(const gproj_mesh *mesh, int32_t f) {
+    int32_t h = mesh->face_halfedge[f];
+    double n[3], size;
+    gproj_mesh_face_area_vector(mesh, f, n);
+    size = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    for (int32_t k = 0; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
+        const double *a = mesh->position + 3 * mesh->origin[mesh->prev[h]], *b = mesh->position + 3 * mesh->origin[h],
+                     *c = mesh->position + 3 * mesh->origin[mesh->next[h]];
+        double turn = 0;
+        for (int i = 0; i < 3; ++i) {
+            int u = (i + 1) % 3, v = (i + 2) % 3;
+            turn += n[i] * ((b[u] - a[u]) * (c[v] - b[v]) - (b[v] - a[v]) * (c[u] - b[u]));
+        }
+        if (turn < -1e-9 * size) return false;
+    }
+    return true;
+}
+
+/* The faces cut into triangles where they are not convex, as far as they can be. NULL: all are convex, or no memory. */
+static gproj_edit *cut_faces(const gproj_mesh *mesh) {
+    gproj_edit *edit = NULL;
+    for (int32_t f = 0; f < mesh->face_count; ++f) {
+        if (is_convex(mesh, f)) continue;
+        if (!edit) edit = gproj_edit_create(mesh, &host, NULL);
+        if (edit) gproj_edit_triangulate(edit, f, NULL);
+    }
+    return edit;
+}
+
 /* Fills the block with pairs of uint32: for each corner of triangles its vertex and its face, then for each edge
-   its two ends. A triangle fan for each face. Returns the number of triangles, 0 without memory. */
+   its two ends. A triangle fan for each convex face. Returns the number of triangles, 0 without memory. */
 int32_t EXPORT(page_topology) page_topology(void) {
     const gproj_mesh *mesh = page.mesh;
-    int32_t triangles = 0;
+    gproj_edit *edit = cut_faces(mesh);
+    const int32_t *first = edit ? edit->face_halfedge : mesh->face_halfedge, *next = edit ? edit->next : mesh->next,
+                  *origin = edit ? edit->origin : mesh->origin, *degree = edit ? edit->face_degree : mesh->face_degree;
+    int32_t faces = edit ? edit->face_count : mesh->face_count, triangles = 0;
     uint32_t *out;
-    for (int32_t f = 0; f < mesh->face_count; ++f) triangles += mesh->face_degree[f] - 2;
+    for (int32_t f = 0; f < faces; ++f) triangles += degree[f] - 2;
     out = page_block(sizeof *out * 2 * (3 * (size_t)triangles + (size_t)mesh->edge_count));
-    if (!out) return 0;
-    for (int32_t f = 0; f < mesh->face_count; ++f) {
-        int32_t first = mesh->face_halfedge[f], h = mesh->next[first];
-        for (int32_t k = 2; k < mesh->face_degree[f]; ++k, h = mesh->next[h]) {
-            int32_t corner[3] = {first, h, mesh->next[h]};
-            for (int c = 0; c < 3; ++c) *out++ = (uint32_t)mesh->origin[corner[c]], *out++ = (uint32_t)f;
+    for (int32_t f = 0; out && f < faces; ++f) {
+        int32_t h = next[first[f]], face = edit ? edit->face_parent[f] : f;
+        for (int32_t k = 2; k < degree[f]; ++k, h = next[h]) {
+            int32_t corner[3] = {first[f], h, next[h]};
+            for (int c = 0; c < 3; ++c) *out++ = (uint32_t)origin[corner[c]], *out++ = (uint32_t)face;
         }
     }
-    for (int32_t h = 0; h < mesh->halfedge_count; ++h) *out++ = (uint32_t)mesh->origin[h];
-    return triangles;
+    for (int32_t h = 0; out && h < mesh->halfedge_count; ++h) *out++ = (uint32_t)mesh->origin[h];
+    gproj_edit_destroy(edit);
+    return out ? triangles : 0;
 }
 
 /* The boundary and fixed vertices, one byte each in the block: 1 on the boundary, 2 fixed by hand. */
@@ -532,6 +570,7 @@ static bool prepare(void) {
         if (page.weight[k] > 0 && page.group[k] < 0) {
             page.group[k] = add_rule((rule)k);
             page.number[k] = page.weight[k];
+            if (page.group[k] < 0 && gproj_form_error(page.form)->code == GPROJ_OK) return refuse(no_memory.message);
         }
         if (page.group[k] >= 0) gproj_set_schedule(page.form, page.group[k], schedule_of(k));
     }
@@ -597,6 +636,7 @@ bool EXPORT(page_grab) page_grab(int32_t vertex, double reach) {
     int32_t *list = malloc(sizeof *list * vertices);
     double *weight = malloc(sizeof *weight * vertices);
     page.residual = 0;
+    if (!list || !weight) refuse(no_memory.message);
     if (list && weight && vertex >= 0 && vertex < page.mesh->vertex_count && prepare()) {
         gproj_handles handles = {1, start, list, weight, page.mesh->position + 3 * vertex};
         start[1] = gproj_find_reach(page.form, vertex, reach * page.radius, list, weight);

@@ -142,16 +142,21 @@ function paint() {
     }
 }
 
-/* The mesh as it was opened, for its small picture: as the library has read it, whatever the file's format. */
+/* The mesh as it was opened, for its small picture: as the library has read it, whatever the file's format. Faces that are
+   not convex come in pieces; vertices without a face are where another one is. */
 function asOpened() {
-    const {corners, places} = mesh, faces = Array.from({length: mesh.faces}, () => []);
+    const {corners, places} = mesh, faces = Array.from({length: mesh.faces}, () => []), pieces = [];
     for (let k = 0; k < corners.length; k += 6) { // a fan: after its first triangle each adds a corner
-        const face = faces[corners[k + 1]];
-        if (!face.length) face.push(corners[k], corners[k + 2]);
-        face.push(corners[k + 4]);
+        const face = faces[corners[k + 1]], [a, b, c] = [corners[k], corners[k + 2], corners[k + 4]];
+        if (!face.length) face.push(a, b, c);
+        else if (face[0] === a && face[face.length - 1] === b) face.push(c);
+        else pieces.push([a, b, c]);
     }
-    const points = Array.from({length: mesh.vertices}, (_, v) => Array.from(places.subarray(4 * v, 4 * v + 3)));
-    return {points, faces};
+    const points = Array.from(drawing.used, (used, v) => {
+        const k = 4 * (used ? v : corners[0]);
+        return Array.from(places.subarray(k, k + 3));
+    });
+    return {points, faces: faces.concat(pieces)};
 }
 
 /* Bars over the ramp: how many panels, or edges, have which colour. */
@@ -225,6 +230,15 @@ function hover(vertex) {
 function select(vertex) {
     selected = vertex;
     showPoints();
+}
+
+/* Selects the next vertex with a face, or, with -1, the one before. */
+function selectNext(by) {
+    if (!mesh) return;
+    let vertex = selected < 0 && by < 0 ? 0 : selected;
+    do vertex = (vertex + by + mesh.vertices) % mesh.vertices;
+    while (!drawing.used[vertex]);
+    select(vertex);
 }
 
 const answers = {
@@ -791,8 +805,8 @@ const keys = {
     ArrowDown: () => selected < 0 ? orbit(0, -0.1) : nudge(0, -1, 0),
     PageUp: () => nudge(0, 0, 1),
     PageDown: () => nudge(0, 0, -1),
-    n: () => mesh && select((selected + 1) % mesh.vertices),
-    p: () => mesh && select((selected + mesh.vertices - 1 + (selected < 0)) % mesh.vertices),
+    n: () => selectNext(1),
+    p: () => selectNext(-1),
     f: toggleFixed,
     s: solve,
     '+': () => zoom(0.9),
@@ -830,13 +844,14 @@ const unsupported = () => isOn('equilibrium') && isClosed() && pins.length === 0
 
 /* A file's name as a word of the shell, and as a string in C. */
 const shellWord = name => /^[\w.+-]+$/.test(name) && name[0] !== '-' ? name : `'./${name.replace(/'/g, "'\\''")}'`;
-const cString = name => `"${name.replace(/["\\?]/g, '\\$&')}"`;
+const octal = c => '\\' + c.charCodeAt(0).toString(8).padStart(3, '0'); // of a control character
+const cString = name => `"${name.replace(/["\\?]/g, '\\$&').replace(/[\0-\x1f\x7f]/g, octal)}"`;
 
 function asCommand() {
     const parts = ['tools/guidedproj', shellWord(opened.name), '-o solved.obj'], pinned = fixedList();
     for (const r of asked()) {
         const w = weights[index[r.key]];
-        if (r.wish) parts.push(r.wish.replace('FILE', shellWord(opened.name)) + w);
+        if (r.wish) parts.push(r.wish.replace('FILE', () => shellWord(opened.name)) + w); // `$&` is no pattern in it
         else if (r.key === 'volume') parts.push(`--volume x${w}`);
         else if (r.key === 'longest') parts.push(`--edge-length ,${w * mesh.meanEdge}`);
         else parts.push(r.command);

@@ -34,6 +34,8 @@ class Drawing {
         this.places = this.frame.subarray(0, parts[0]);
         this.values = this.frame.subarray(parts[0], parts[0] + parts[1]);
         this.forces = this.frame.subarray(parts[0] + parts[1]);
+        this.used = new Uint8Array(vertices); // has the vertex a face? Others are not seen, and may be far away
+        for (let k = 0; k < corners.length; k += 2) this.used[corners[k]] = 1;
         this.painter.postMessage({does: 'setMesh', mesh: {vertices, faces, edges, corners, ends}});
         this.setPoints([]);
     }
@@ -114,10 +116,11 @@ class Drawing {
         return [(x / w + 1) / 2 * this.canvas.clientWidth, (1 - y / w) / 2 * this.canvas.clientHeight, w];
     }
 
-    /* Where the vertices appear: [[least x, least y], [most x, most y]] in CSS pixels. */
+    /* Where the vertices with a face appear: [[least x, least y], [most x, most y]] in CSS pixels. */
     extent() {
         const m = this.matrix(), p = this.places, low = [Infinity, Infinity], high = [-Infinity, -Infinity];
         for (let k = 0; k < p.length; k += 4) {
+            if (!this.used[k / 4]) continue;
             const w = m[3] * p[k] + m[7] * p[k + 1] + m[11] * p[k + 2] + m[15];
             for (let r = 0; r < 2; ++r) {
                 const at = (m[r] * p[k] + m[4 + r] * p[k + 1] + m[8 + r] * p[k + 2] + m[12 + r]) / w;
@@ -146,6 +149,7 @@ class Drawing {
               radius = finger ? Math.max(9, Math.min(26, long / 2)) : Math.max(5, Math.min(14, long / 3));
         let best = -1, least = Infinity;
         for (let v = 0, k = 0; v < this.mesh.vertices; ++v, k += 4) {
+            if (!this.used[v]) continue;
             const w = m[3] * p[k] + m[7] * p[k + 1] + m[11] * p[k + 2] + m[15];
             const dx = ((m[0] * p[k] + m[4] * p[k + 1] + m[8] * p[k + 2] + m[12]) / w + 1) * width - x;
             const dy = (1 - (m[1] * p[k] + m[5] * p[k + 1] + m[9] * p[k + 2] + m[13]) / w) * height - y;
