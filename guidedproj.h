@@ -119,7 +119,7 @@
      with flat faces is a sawtooth. So, with a stiffness k,
      - the smooth metric adds k^2 |dx_i - dx_j|^2 along edges, more where these are short beside others, and a little
        |dx_i|^2: neighbours move together, nothing is biased. k follows how well the linearised rows foretold the last
-       step, and rests near the solution;
+       step, and rests near the solution. If a step ripples, second differences join the metric (>>corners);
      - settling (Golub, Pereyra 1973) refits normals and axes to the vertices after each step. Carried along linearly,
        they would report every rotation as an error and cut good steps short;
      - bending adds a second-order correction. The error 1/2 dx'H dx of a step is known exactly, and the factor at hand
@@ -218,7 +218,7 @@
        >>catalogue      the constraints and wishes, and how to add one
        >>statics        equilibrium, bounds on forces, their start
        >>guard          faces must not turn over
-       >>corners        faces must keep their corners
+       >>corners        faces must keep their corners, and not ripple
        >>verdict        why a solve has ended as it did
        >>solve          solving a form
        >>state          what a form remembers, as bytes
@@ -1556,6 +1556,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      stay fair that way, and move farther for it. If nothing is wished the way from the beginning of the solve is
      measured like that, as long as steps go well, so that it ends near the smoothest change of all. No closeness is
      added. Forces are measured, too, if steps fail.
+   - If one of the first four steps makes planar faces bend to and fro from row to row, half as much again as at the
+     beginning and more, second differences |d_i - 2 d_j + d_k| along the polylines of edges are measured as well, with
+     the weight 0.15 sqrt(F) beside the others (F faces, 100 or more), and the step is found again: fine meshes end
+     without ripples, and move a little farther.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
@@ -2571,7 +2575,7 @@ GPROJI_INTERNAL void gproji_pool_give_all(gproji_pool *pool) {
 /* Takes a block. NULL, and pool->failed, when there is no memory, or if the count is negative or too large for the
    address space. */
 GPROJI_INTERNAL void *gproji_pool_take(gproji_pool *pool, int64_t count, size_t size) {
-    bool possible = (uint64_t)count <= SIZE_MAX / 4 / size; /* a negative one is beyond it */
+    bool possible = (uint64_t)count <= SIZE_MAX / 4 / size;                          /* a negative one is beyond it */
     size_t bytes = possible ? sizeof(gproji_link) + (size_t)count * size : SIZE_MAX; /* which is refused */
     gproji_link *link = (gproji_link *)gproji_take(pool->heap, bytes, 1);
     if (!link) {
@@ -8510,10 +8514,12 @@ GPROJ_API gproj_code gproj_system_set_row_weight(gproj_system *s, int32_t group,
     gproji_group *g;
     if (!s) return GPROJ_ERROR_ARGUMENT;
     if (s->error.code) return s->error.code;
-    if (!gproji_system_has_row(s, group, row) || !(weight >= 0 && weight <= gproji_weight_most))
+    if (!gproji_system_has_row(s, group, row))
+        return gproji_fail(&s->error, GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, row, "there is no row %d in group %d", row,
+                           group);
+    if (!(weight >= 0 && weight <= gproji_weight_most))
         return gproji_fail(&s->error, GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, row,
-                           "weight %g for row %d of group %d: there is no such row, or the weight is not in 0..1e50",
-                           weight, row, group);
+                           "weight %g for row %d of group '%s' is not in 0..1e50", weight, row, s->group[group].name);
     g = &s->group[group];
     g->row[row].weight = weight;
     if (g->share) {
@@ -9166,17 +9172,6 @@ GPROJI_INTERNAL bool gproji_factor_matrix(gproj_system *s, double epsilon, bool 
    so that U costs half a solution. The step's equations hold to the rounding in the parts of z - Y m, which may cancel
    where eps is small; the next step takes away what is left. */
 
-/* Next dense row that acts, in a fixed order; NULL: no further one. at: {0, -1} before the first. */
-GPROJI_INTERNAL const gproji_row *gproji_next_wide_row(const gproj_system *s, gproji_row_name *at) {
-    for (; s->wide_count > 0 && at->group < s->group_count; ++at->group, at->row = -1) {
-        const gproji_group *g = &s->group[at->group];
-        if (!g->has_wide || !(g->weight > 0)) continue;
-        while (++at->row < g->row_count)
-            if (g->row[at->row].wide && g->row[at->row].active) return &g->row[at->row];
-    }
-    return NULL;
-}
-
 /* Column `index` in U, or in Y. */
 GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
     return s->vector.sides + (int64_t)s->variable_count * (index + 1);
@@ -9185,26 +9180,29 @@ GPROJI_INLINE double *gproji_wide_side(const gproj_system *s, int32_t index) {
 /* Writes the columns of U, of which only the first n numbers count, and wide.vector = w phi. Returns how many dense
    rows act. */
 GPROJI_INTERNAL int32_t gproji_wide_columns(gproj_system *s, size_t n) {
-    gproji_row_name at = {0, -1};
-    const gproji_row *row;
-    int32_t count = 0;
-    while ((row = gproji_next_wide_row(s, &at)) != NULL) {
-        const gproji_group *g = &s->group[at.group];
-        const double *gradient = g->local.gradient + row->local;
-        double *out = gproji_wide_side(s, count), scale = sqrt(gproji_weight2(g, row));
-        size_t first, end, v;
-        s->wide.vector[count++] = scale * row->phi;
-        if (!row->contiguous) {
-            memset(out, 0, n * sizeof *out);
-            gproji_row_add(g, row, scale, out);
-            continue;
+    int32_t count = 0, i, r;
+    for (i = 0; s->wide_count > 0 && i < s->group_count; ++i) {
+        const gproji_group *g = &s->group[i];
+        for (r = 0; g->has_wide && g->weight > 0 && r < g->row_count; ++r) {
+            const gproji_row *row = &g->row[r];
+            const double *gradient = g->local.gradient + row->local;
+            double *out, scale = sqrt(gproji_weight2(g, row));
+            size_t first, end, v;
+            if (!row->wide || !row->active) continue;
+            out = gproji_wide_side(s, count);
+            s->wide.vector[count++] = scale * row->phi;
+            if (!row->contiguous) {
+                memset(out, 0, n * sizeof *out);
+                gproji_row_add(g, row, scale, out);
+                continue;
+            }
+            /* Contiguous rows write each number once: the column is long. */
+            first = (size_t)g->local.variable[row->local];
+            end = first + (row[1].local - row->local);
+            memset(out, 0, first * sizeof *out);
+            for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
+            if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
         }
-        /* Contiguous rows write each number once: the column is long. */
-        first = (size_t)g->local.variable[row->local];
-        end = first + (row[1].local - row->local);
-        memset(out, 0, first * sizeof *out);
-        for (v = first; v < end; ++v) out[v] = scale * gradient[v - first];
-        if (end < n) memset(out + end, 0, (n - end) * sizeof *out);
     }
     return count;
 }
@@ -10421,7 +10419,8 @@ GPROJI_INTERNAL void gproji_schur_finish(gproj_system *s) {
        guard       form, before the solve              while wishes guide and somewhat longer, as bounds    no
        safeguard   form, when a step has violated it   as bounds, until they are let go                     no
                    (hooks.inspect, hooks.wake)
-       metric      form, in smooth solves              with k, until it rests near a solution               no
+       metric      form, in smooth solves; some when   with k, until it rests near a solution               no
+                   a step ripples (the same hooks)
        brake       form, in smooth solves of forces    with k (k - 1) for k > 1, after steps have failed    no
    Drags take all but wishes, guard and metrics (gproji_see_hard). */
 
@@ -10477,7 +10476,7 @@ typedef struct gproji_standing {
 /* Callbacks by which the owner of a system takes part in steps; any may be NULL. */
 typedef struct gproji_hooks {
     void (*settle)(void *user, double *x); /* gives local unknowns (normals) their best values at x */
-    /* Marks safeguards without a row that x violates; are there any? */
+    /* Marks safeguards without a row that x violates, and metrics that x shows to be missing; are there any? */
     bool (*inspect)(void *user, const double *before, const double *x);
     bool (*wake)(void *user); /* gives these rows, at the x before; are there new ones? */
     bool (*mend)(void *user); /* nearest: gives safeguards rows if the mesh is spoiled; are there new ones? */
@@ -18879,6 +18878,7 @@ typedef enum gproji_own {
     GPROJI_OWN_CORNERS,
     GPROJI_OWN_BRAKE,
     GPROJI_OWN_FAIRNESS,
+    GPROJI_OWN_BENDING,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -18957,6 +18957,7 @@ typedef struct gproji_unknowns {
 typedef struct gproji_solve {
     bool on;       /* there is more to do */
     bool finished; /* it has ended: the loop's result is the verdict */
+    bool ripples;  /* the step that was looked at last: see gproji_inspect */
     gproji_loop loop;
     int64_t structure; /* of the system at the beginning: gproji_structure_of */
 } gproji_solve;
@@ -22216,8 +22217,8 @@ GPROJI_INTERNAL void gproji_add_guard(gproj_form *form) {
 }
 
 /* ============================================================================================================
-   >>corners   Faces keep their corners and edges. Uses platform, error, vector, stream, system, loop, mesh, measure,
-   form, catalogue.
+   >>corners   Faces keep their corners and edges, and do not ripple. Uses platform, error, vector, stream, system,
+   loop, mesh, measure, form, catalogue.
 
    Constraints can be met by degenerate elements: a planar face may be folded or turned over in its plane, a circular
    one may have lost an edge. So every corner of a face keeps a part of the area that it had
@@ -22410,7 +22411,7 @@ GPROJI_INTERNAL bool gproji_corner_acts_now(const gproji_part *part, int32_t ite
 }
 
 /* Marks the corners, edges and bends that do not act and are within `margin` of their bounds at x, for
-   gproji_wake_corners; at the first one it stops if that is enough. Returns whether there was one. */
+   gproji_wake; at the first one it stops if that is enough. Returns whether there was one. */
 GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *before, const double *x, double margin,
                                          bool first) {
     const gproji_corners *corners = gproji_corners_of(part);
@@ -22449,31 +22450,140 @@ GPROJI_INTERNAL bool gproji_seek_corners(const gproji_part *part, const double *
     return found;
 }
 
-/* The part of a form that has one, if corners act in this solve; NULL: they do not. */
+/* The part, if corners act in this solve; NULL: they do not. */
 GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    return gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
+    return part && gproji_group_at(form->system, part->group)->weight > 0 ? part : NULL;
 }
 
-/* Does the step to x violate the bound of a corner that does not act yet? Marks those that should. */
-GPROJI_INTERNAL bool gproji_inspect_corners(void *user, const double *before, const double *x) {
-    gproji_part *part = gproji_acting_corners((gproj_form *)user);
-    int32_t rounds;
-    if (!part || !gproji_seek_corners(part, before, x, 0, true)) return false;
-    rounds = ++gproji_corners_of(part)->rounds;
-    return gproji_seek_corners(part, before, x, gproji_fmin(gproji_corner_margin * rounds, gproji_corner_margin_most),
-                               false);
+/* -- ripples -- */
+
+/* Faces become flat with the least differences along edges by bending to and fro from one row of faces to the next, the
+   more so the finer the mesh is. So the first steps are looked at, and one that ripples is found again with second
+   differences in the metric,
+       k^2 sum b |dx_i - 2 dx_j + dx_k|^2    along polylines of edges, j in the middle.
+   With b the square of a length in edges they make the metric |grad dx|^2 + length^2 |grad^2 dx|^2, as it is written
+   for a smooth surface. The length is a part of the mesh's size, so that meshes end as smooth at all resolutions. Where
+   no step ripples they are left out, for meshes move farther with them. */
+
+static const double gproji_ripple_more = 1.5;    /* a step ripples if there is so many times what there was, */
+static const double gproji_ripple_least = 0.005; /* and so much more: an angle, half of it between faces */
+static const double gproji_ripple_stiff = 0.05;  /* the least stiffness at which steps are looked at */
+/* The length, times the root of the number of faces: in edges. In small meshes, where it is shorter than the second, no
+   step is looked at: they are hardly longer than a ripple. */
+static const double gproji_bending_part = 0.15, gproji_bending_least = 1.5;
+static const double gproji_bending_nearest = 1e-3; /* shorter edges weigh no more */
+enum {
+    GPROJI_RIPPLE_STEPS = 4,   /* that many are looked at: later ones are short, or all goes wrong */
+    GPROJI_BENDING_VALENCE = 8 /* at vertices with more edges there are no second differences */
+};
+
+static const gproji_rule gproji_bending_rule = {"smooth bending",   GPROJ_WISH,    GPROJ_PLACE_NONE,
+                                                GPROJI_OWN_BENDING, GPROJI_METRIC, NULL};
+
+/* How much faces bend to and fro: the root mean square of n_a - 2 n + n_b, the unit normals of a face and of its
+   neighbours at opposite edges. Overwrites work.area. */
+GPROJI_INTERNAL double gproji_find_ripple(const gproj_form *form, const double *x) {
+    const gproj_mesh *mesh = form->mesh;
+    double *normal = form->work.area, sum = 0;
+    int64_t count = 0;
+    int32_t f, i, k;
+    for (f = 0; f < mesh->face_count; ++f) gproji_unit_normal(mesh, x, f, normal + 3 * (size_t)f);
+    for (f = 0; f < mesh->face_count; ++f) {
+        int32_t half = mesh->face_degree[f] / 2, h = mesh->face_halfedge[f], opposite = h;
+        if (mesh->face_degree[f] != 2 * half) continue;
+        for (i = 0; i < half; ++i) opposite = mesh->next[opposite];
+        for (i = 0; i < half; ++i, h = mesh->next[h], opposite = mesh->next[opposite]) {
+            int32_t a = mesh->face[h ^ 1], b = mesh->face[opposite ^ 1];
+            for (k = 0; a >= 0 && b >= 0 && k < 3; ++k) {
+                double d = normal[3 * (size_t)a + k] - 2 * normal[3 * (size_t)f + k] + normal[3 * (size_t)b + k];
+                sum += d * d;
+            }
+            count += a >= 0 && b >= 0;
+        }
+    }
+    return count > 0 ? sqrt(sum / (double)count) : 0;
 }
 
-/* Lets the marked corners act; returns whether there are new ones. x is that of before the step. */
-GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
+/* Lets second differences act, as seen from where the solve began; adds them, if there are none yet. A vertex is
+   in the middle of two if it has four edges, across opposite ones; else of one, to all its neighbours, and at the
+   boundary to those along that. Neighbours weigh by the inverse of their distance: a change that is even in space, and
+   not in numbers of edges, has none. */
+GPROJI_INTERNAL void gproji_let_bend(const gproji_part *part) {
+    const gproj_form *form = part->form;
+    const gproj_mesh *mesh = form->mesh;
+    double weight = gproji_bending_part * sqrt((double)mesh->face_count);
+    int32_t rows = gproji_group_at(form->system, part->group)->row_count, row = 0, v, i, k;
+    for (v = 0; v < mesh->vertex_count; ++v) {
+        double place[GPROJI_BENDING_VALENCE + 1][3], close[GPROJI_BENDING_VALENCE + 1]; /* 0: the middle */
+        int32_t ring[GPROJI_BENDING_VALENCE + 1], count = gproj_mesh_valence(mesh, v), every, first;
+        int32_t h = mesh->vertex_halfedge[v];
+        if (count == 0 || count > GPROJI_BENDING_VALENCE) continue;
+        if (gproj_mesh_is_boundary_vertex(mesh, v))
+            ring[1] = mesh->origin[h ^ 1], ring[2] = mesh->origin[mesh->prev[h]], count = 2;
+        else
+            for (i = 1; i <= count; ++i, h = gproji_rotate(mesh, h)) ring[i] = mesh->origin[h ^ 1];
+        for (ring[0] = v, i = 0; i <= count; ++i) {
+            gproji_to_internal(form, form->before + 3 * (size_t)ring[i], place[i]);
+            close[i] = 1 / gproji_fmax(gproji_distance3(place[i], place[0]), gproji_bending_nearest);
+        }
+        every = count == 4 ? 2 : 1;
+        for (first = 1; first <= every; ++first) {
+            double sum = 0;
+            for (i = first; i <= count; i += every) sum += close[i];
+            for (k = 0; k < 3; ++k, ++row) {
+                gproj_term term[GPROJI_BENDING_VALENCE + 1];
+                double began = -2 * place[0][k];
+                int32_t terms = 1;
+                gproji_set_term(&term[0], 3 * v + k, -1, -2);
+                for (i = first; i <= count; i += every) {
+                    began += 2 * close[i] / sum * place[i][k];
+                    gproji_set_term(&term[terms++], 3 * ring[i] + k, -1, 2 * close[i] / sum);
+                }
+                if (row >= rows && gproji_add_row(form->system, part->group, terms, term, 0, -1) < 0) return;
+                for (i = 0; row < rows && i < terms; ++i)
+                    gproji_row_terms(form->system, part->group, row, &terms)[i].a = term[i].a;
+                gproji_set_row(form->system, part->group, row, weight, -began);
+            }
+        }
+    }
+}
+
+/* -- what a step shows -- */
+
+/* Does the step to x violate the bound of a corner that does not act yet, or does it ripple? Marks the corners that
+   should act: the more often there were any, the farther from their bounds. */
+GPROJI_INTERNAL bool gproji_inspect(void *user, const double *before, const double *x) {
     gproj_form *form = (gproj_form *)user;
+    gproji_solve *solve = &form->solve;
+    const gproji_part *corners = gproji_acting_corners(form), *bending = gproji_own_part(form, GPROJI_OWN_BENDING);
+    const gproji_group *g = bending ? gproji_group_at(form->system, bending->group) : NULL;
+    bool violates = corners && gproji_seek_corners(corners, before, x, 0, true);
+    if (violates) {
+        int32_t rounds = ++gproji_corners_of(corners)->rounds;
+        gproji_seek_corners(corners, before, x, gproji_fmin(gproji_corner_margin * rounds, gproji_corner_margin_most),
+                            false);
+    }
+    solve->ripples = false;
+    if (g && g->weight >= gproji_ripple_stiff * g->schedule.weight && solve->loop.attempt.earlier == 0 &&
+        solve->loop.result.iterations < GPROJI_RIPPLE_STEPS && g->row_count == 0 &&
+        gproji_bending_part * sqrt((double)form->mesh->face_count) >= gproji_bending_least) {
+        double began = gproji_find_ripple(form, form->before);
+        solve->ripples = gproji_find_ripple(form, x) > gproji_ripple_more * began + gproji_ripple_least;
+    }
+    return violates || solve->ripples;
+}
+
+/* Lets the marked corners act, and after a step that ripples second differences; returns whether anything is new. x is
+   that of before the step. */
+GPROJI_INTERNAL bool gproji_wake(void *user) {
+    const gproj_form *form = (const gproj_form *)user;
     gproj_system *system = form->system;
     gproji_part *part = gproji_own_part(form, GPROJI_OWN_CORNERS);
-    gproji_corners *corners = gproji_corners_of(part);
+    gproji_corners *corners = part ? gproji_corners_of(part) : NULL;
     int32_t item, row, edge;
     bool woken = false;
-    for (item = 0; item < corners->items; ++item) {
+    for (item = 0; corners && item < corners->items; ++item) {
         if (!corners->marked[item]) continue;
         corners->marked[item] = 0;
         row = corners->row[item] < 0 ? gproji_add_corner_row(part, item) : corners->row[item];
@@ -22483,7 +22593,8 @@ GPROJI_INTERNAL bool gproji_wake_corners(void *user) {
         woken = true;
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
-    return woken;
+    if (form->solve.ripples) gproji_let_bend(gproji_own_part(form, GPROJI_OWN_BENDING));
+    return woken || form->solve.ripples;
 }
 
 /* For a solve for the nearest mesh: if that is spoiled now, lets all edges act and, in planar faces, all corners along
@@ -22504,7 +22615,7 @@ GPROJI_INTERNAL bool gproji_mend_corners(void *user) {
             corners->length[e] > 0 && !gproji_corner_acts_now(part, corners->edges + e);
     for (h = 0; planar && h < form->mesh->halfedge_count; ++h)
         corners->marked[2 * h + 1] = corners->size[h] > 0 && !gproji_corner_acts_now(part, 2 * h + 1);
-    return gproji_wake_corners(user);
+    return gproji_wake(user);
 }
 
 /* Has a corner become small, and lost most of the area in the step to x, or an edge the length? */
@@ -23444,18 +23555,26 @@ GPROJI_INTERNAL void gproji_load_positions(gproj_form *form) {
     }
 }
 
-/* The mesh's positions = x; a vertex that is where it was `before` keeps its coordinates to the bit. */
-GPROJI_INTERNAL void gproji_store_positions(gproj_form *form, const double *before) {
+/* The mesh's positions = x; a vertex that is where it was `before` keeps its coordinates to the bit. False: one is
+   farther than vertices may be, and the mesh is left as it is. */
+GPROJI_INTERNAL bool gproji_store_positions(gproj_form *form, const double *before) {
     const double *x = gproj_system_values(form->system);
     size_t i, end = 3 * (size_t)form->mesh->vertex_count;
+    double was[3];
+    int32_t k;
     for (i = 0; i < end; i += 3) {
-        double was[3];
+        gproji_from_internal(form, x + i, was);
+        for (k = 0; k < 3; ++k)
+            if (!(fabs(x[i + k]) <= gproji_farthest && fabs(was[k]) <= GPROJI_COORDINATE_MAX)) return false;
+    }
+    for (i = 0; i < end; i += 3) {
         gproji_to_internal(form, before + i, was);
         if (memcmp(was, x + i, sizeof was) != 0)
             gproji_from_internal(form, x + i, form->mesh->position + i);
         else
             gproji_copy3(before + i, form->mesh->position + i);
     }
+    return true;
 }
 
 /* Puts the mesh back to its positions before the solve or the drag. */
@@ -23561,6 +23680,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
     if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
+    if (own == GPROJI_OWN_BENDING) gproji_new_group(form, &gproji_bending_rule, 0);
     if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
 }
 
@@ -23675,12 +23795,13 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, bends, anchored;
+    bool carries, whole, corners;
     bool started = form->statics && form->statics->started;
     double wished = gproji_heaviest_wish(form->system, true);
     const gproji_part *part;
     int32_t guided, guiding, i;
-    solve->on = solve->finished = false;
+    solve->on = solve->finished = solve->ripples = false;
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
@@ -23691,6 +23812,10 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     anchored = metric && beginning->stiffness <= 1 && !(wished > 0);
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
+    bends = metric && gproji_is_on(form, form->planarity);
+    part = gproji_own_part(form, GPROJI_OWN_BENDING);
+    if (part) gproji_renew_group(form->system, part->group, 0); /* until a step ripples */
+    gproji_schedule_own(form, GPROJI_OWN_BENDING, gproj_keep(bends ? gproji_metric_smooth : 0));
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
     /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. With
        forces that is for a shape that carries, so that its faces need not turn over to do so. */
@@ -23727,19 +23852,6 @@ failed:
     return false;
 }
 
-/* Has the solve led farther than vertices may be? */
-GPROJI_INTERNAL bool gproji_is_beyond(const gproj_form *form) {
-    const double *x = gproj_system_values(form->system);
-    int32_t i, k;
-    for (i = 0; i < form->mesh->vertex_count; ++i) {
-        double p[3];
-        gproji_from_internal(form, x + 3 * (size_t)i, p);
-        for (k = 0; k < 3; ++k)
-            if (!(fabs(x[3 * i + k]) <= gproji_farthest && fabs(p[k]) <= GPROJI_COORDINATE_MAX)) return true;
-    }
-    return false;
-}
-
 /* Runs form->solve for `seconds` (see gproji_run), writes the positions back, and at the end adds to the verdict. */
 GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) {
     gproji_loop *loop = &form->solve.loop;
@@ -23756,17 +23868,14 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
        with whole faces where it does not with straight steps. */
     if (smooth && (loop->attempt.earlier > 0 || gproji_is_on(form, form->planarity)))
         hooks->settle = gproji_settle_form;
-    if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) {
-        hooks->inspect = gproji_inspect_corners;
-        hooks->wake = gproji_wake_corners;
-        hooks->refuse = gproji_refuse_corners;
-    }
+    if (smooth) hooks->inspect = gproji_inspect, hooks->wake = gproji_wake;
+    if (smooth && gproji_own_part(form, GPROJI_OWN_CORNERS)) hooks->refuse = gproji_refuse_corners;
     /* 2. The steps. */
     ended = gproji_run(loop, seconds);
     doubted = ended && gproji_doubt_equilibrium(form, result);
     if (ended) form->solve.on = false, form->solve.finished = true;
     if (result->outcome == GPROJ_FAILED) return *result;
-    if (gproji_is_beyond(form)) {
+    if (!gproji_store_positions(form, form->before)) {
         form->solve.on = false, form->solve.finished = true;
         gproji_load_positions(form);
         result->outcome = GPROJ_STALLED;
@@ -23775,7 +23884,6 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
                       "where it was: ask for less, or fix vertices");
         return *result;
     }
-    gproji_store_positions(form, form->before);
     if (!ended) return *result;
     /* 3. The verdict, clause by clause. */
     if (gproji_heaviest_wish(form->system, true) > 0 && !loop->attempt.left_out && !gproji_is_held(form))
@@ -24042,7 +24150,12 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             break;
         }
         part = gproji_part_of(form, group);
-        gproji_pass_group(stream, form->system, group, kind != GPROJI_OWN_NONE, passing);
+        gproji_pass_group(stream, form->system, group, kind != GPROJI_OWN_NONE,
+                          kind == GPROJI_OWN_BENDING ? GPROJI_PASS_NONE : passing);
+        /* Second differences need no numbers but the positions before, which are there. */
+        if (kind == GPROJI_OWN_BENDING && passing && stream->mode == GPROJI_READ &&
+            gproji_group_at(form->system, group)->row_count > 0)
+            gproji_let_bend(part);
         if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
@@ -24050,11 +24163,12 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
             gproji_renew_group(form->system, group, gproji_group_at(form->system, group)->row_count);
 }
 
-/* Passes which of the library's own groups there are, and the corners and edges that have rows, in their order. The
-   form gets those that come in, and when they are read no others: how steps are found depends on them. */
+/* Passes which of the library's own groups there are, whether there are second differences, and the corners and edges
+   that have rows, in their order. The form gets those that come in, and when they are read no others: how steps are
+   found depends on them. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], count = 0, k, r;
-    bool in = gproji_comes_in(stream);
+    bool in = gproji_comes_in(stream), bends, had;
     gproji_corners *corners;
     gproji_part *part;
     for (k = 0; !in && k < gproj_system_group_count(form->system); ++k)
@@ -24066,6 +24180,13 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         if (in && own > GPROJI_OWN_NONE && own < GPROJI_OWN_COUNT && (form->statics || !of_forces))
             gproji_add_own_group(form, (gproji_own)own);
     }
+    part = gproji_own_part(form, GPROJI_OWN_BENDING);
+    bends = had = part && gproji_group_at(form->system, part->group)->row_count > 0;
+    bends = gproji_pass_bool(stream, &bends);
+    if (bends && !part) gproji_fail_stream(stream, "second differences have no group");
+    if (bends && !had && part) gproji_let_bend(part);
+    if (gproj_system_error(form->system)->code != GPROJ_OK) gproji_fail_stream_memory(stream);
+    if (had && !bends && stream->mode == GPROJI_READ) gproji_renew_group(form->system, part->group, 0);
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     corners = part ? gproji_corners_of(part) : NULL;
     count = part ? gproji_group_at(form->system, part->group)->row_count : 0;
@@ -24166,7 +24287,7 @@ GPROJI_INTERNAL uint64_t gproji_fingerprint(const gproj_form *form) {
 
 /* -- the block -- */
 
-static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'N'};
+static const char gproji_state_magic[8] = {'g', 'p', 'r', 'o', 'j', 's', 't', 'O'};
 
 GPROJI_INTERNAL gproji_stream gproji_make_stream(gproji_mode mode, uint8_t *out, const uint8_t *in, size_t at,
                                                  size_t size) {

@@ -716,7 +716,7 @@ GPROJT_TEST(every_damage_is_seen) {
     gproj_form *form = gprojt_form_in_frames(mesh, &state, &size);
     damaged = (uint8_t *)malloc(size + 8);
     if (!damaged) abort();
-    GPROJT_CHECK(memcmp(state, "gprojstN", 8) == 0); /* as the header and README's "Changes" say */
+    GPROJT_CHECK(memcmp(state, "gprojstO", 8) == 0); /* as the header and README's "Changes" say */
     for (i = 0; i < size; ++i) {
         memcpy(damaged, state, size);
         damaged[i] ^= (uint8_t)(1 + i % 255);

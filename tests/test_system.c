@@ -292,7 +292,7 @@ static int64_t gprojt_do_wrong(gproj_system *s, gprojt_call call) {
     case GPROJT_INFINITE_CONSTANT: return gproj_system_add_row(s, 0, 1, &term, HUGE_VAL, 0);
     case GPROJT_SET_NO_ROW: return -(gproj_system_set_row(s, 0, 1, NULL, 0) == GPROJ_ERROR_INDEX);
     case GPROJT_SET_ROW_OF_NO_GROUP: return -(gproj_system_set_row(s, 3, 0, NULL, 0) == GPROJ_ERROR_INDEX);
-    case GPROJT_WEIGHT_OF_NO_ROW: return -(gproj_system_set_row_weight(s, 0, -1, 1) == GPROJ_ERROR_ARGUMENT);
+    case GPROJT_WEIGHT_OF_NO_ROW: return -(gproj_system_set_row_weight(s, 0, -1, 1) == GPROJ_ERROR_INDEX);
     case GPROJT_NEGATIVE_ROW_WEIGHT: return -(gproj_system_set_row_weight(s, 0, 0, -1) == GPROJ_ERROR_ARGUMENT);
     case GPROJT_INFINITE_ROW_WEIGHT: return -(gproj_system_set_row_weight(s, 0, 0, HUGE_VAL) == GPROJ_ERROR_ARGUMENT);
     case GPROJT_SCHEDULE_OF_NO_GROUP:
@@ -339,7 +339,7 @@ static const gprojt_refusal gprojt_refusals[GPROJT_CALLS] = {
     {GPROJ_ERROR_NUMBER, GPROJ_PLACE_ROW, 1, "not a finite number"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 1, "no row 1 in group 0"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, 0, "no row 0 in group 3"},
-    {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, -1, "row -1 of group 0"},
+    {GPROJ_ERROR_INDEX, GPROJ_PLACE_ROW, -1, "no row -1 in group 0"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 0, "weight -1 for row 0"},
     {GPROJ_ERROR_ARGUMENT, GPROJ_PLACE_ROW, 0, "weight inf"},
     {GPROJ_ERROR_INDEX, GPROJ_PLACE_GROUP, 1, "no group 1"},
