@@ -22487,7 +22487,7 @@ GPROJI_INTERNAL double gproji_find_ripple(const gproj_form *form, const double *
     const gproj_mesh *mesh = form->mesh;
     double *normal = form->work.area, sum = 0;
     int64_t count = 0;
-    int32_t f, i, k;
+    int32_t f, i;
     for (f = 0; f < mesh->face_count; ++f) gproji_unit_normal(mesh, x, f, normal + 3 * (size_t)f);
     for (f = 0; f < mesh->face_count; ++f) {
         int32_t half = mesh->face_degree[f] / 2, h = mesh->face_halfedge[f], opposite = h;
@@ -22495,11 +22495,13 @@ GPROJI_INTERNAL double gproji_find_ripple(const gproj_form *form, const double *
         for (i = 0; i < half; ++i) opposite = mesh->next[opposite];
         for (i = 0; i < half; ++i, h = mesh->next[h], opposite = mesh->next[opposite]) {
             int32_t a = mesh->face[h ^ 1], b = mesh->face[opposite ^ 1];
-            for (k = 0; a >= 0 && b >= 0 && k < 3; ++k) {
-                double d = normal[3 * (size_t)a + k] - 2 * normal[3 * (size_t)f + k] + normal[3 * (size_t)b + k];
-                sum += d * d;
-            }
-            count += a >= 0 && b >= 0;
+            double d[3];
+            if (a < 0 || b < 0) continue;
+            gproji_sub3(normal + 3 * (size_t)a, normal + 3 * (size_t)f, d);
+            gproji_add_scaled3(-1, normal + 3 * (size_t)f, d);
+            gproji_add_scaled3(1, normal + 3 * (size_t)b, d);
+            sum += gproji_dot3(d, d);
+            ++count;
         }
     }
     return count > 0 ? sqrt(sum / (double)count) : 0;
@@ -23565,7 +23567,7 @@ GPROJI_INTERNAL bool gproji_store_positions(gproj_form *form, const double *befo
     for (i = 0; i < end; i += 3) {
         gproji_from_internal(form, x + i, was);
         for (k = 0; k < 3; ++k)
-            if (!(fabs(x[i + k]) <= gproji_farthest && fabs(was[k]) <= GPROJI_COORDINATE_MAX)) return false;
+            if (!(fabs(x[i + (size_t)k]) <= gproji_farthest && fabs(was[k]) <= GPROJI_COORDINATE_MAX)) return false;
     }
     for (i = 0; i < end; i += 3) {
         gproji_to_internal(form, before + i, was);
