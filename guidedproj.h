@@ -23803,7 +23803,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     double wished = gproji_heaviest_wish(form->system, true);
     const gproji_part *part;
     int32_t guided, guiding, i;
-    solve->on = solve->finished = solve->ripples = false;
+    solve->on = solve->finished = false;
     if (!gproji_positions_are_finite(form, &form->error)) goto failed;
     memcpy(form->before, form->mesh->position, 3 * (size_t)form->mesh->vertex_count * sizeof *form->before);
     gproji_load_positions(form);
@@ -23861,7 +23861,7 @@ GPROJI_INTERNAL gproj_result gproji_run_solve(gproj_form *form, double seconds) 
     gproji_hooks *hooks = &loop->hooks;
     bool nearest = loop->options.nearest, smooth = loop->options.smooth && !nearest, ended, doubted;
     /* 1. What the form adds to the system's steps. */
-    loop->attempt.futile = false;
+    loop->attempt.futile = form->solve.ripples = false;
     memset(hooks, 0, sizeof *hooks);
     hooks->user = form;
     if (nearest && gproji_own_part(form, GPROJI_OWN_GUARD)) hooks->refuse = gproji_refuse_turned;
