@@ -7732,7 +7732,7 @@ typedef enum gproji_role {
     GPROJI_GUIDE,     /* a wish that the library adds */
     GPROJI_GUARD,     /* a bound on steps, with rows that are dormant until steps come near to them */
     GPROJI_SAFEGUARD, /* a bound on steps, with rows that are added when a step violates it; see gproji_structure_of */
-    GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop */
+    GPROJI_METRIC,    /* measures steps: only gradients count, see >>loop; a form adds rows when a step ripples */
     GPROJI_BRAKE      /* a metric that acts after steps have failed, at a stiffness above 1 */
 } gproji_role;
 
@@ -8257,13 +8257,13 @@ GPROJI_INTERNAL bool gproji_worst_by_element(const gproj_system *s, int32_t grou
     return true;
 }
 
-/* Counts what was added to a system: variables, groups and rows, but for those of safeguards, which come on demand. Of
-   this nothing is ever taken away, so an equal number means equal structure. */
+/* Counts what was added to a system: variables, groups and rows, but for those of safeguards and metrics, which come on
+   demand. Of this nothing is ever taken away, so an equal number means equal structure. */
 GPROJI_INTERNAL int64_t gproji_structure_of(const gproj_system *s) {
     int64_t all = (int64_t)s->variable_count + s->group_count;
     int32_t i;
     for (i = 0; i < s->group_count; ++i)
-        if (s->group[i].role != GPROJI_SAFEGUARD) all += s->group[i].row_count;
+        if (s->group[i].role < GPROJI_SAFEGUARD) all += s->group[i].row_count;
     return all;
 }
 

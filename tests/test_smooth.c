@@ -286,7 +286,8 @@ GPROJT_TEST(steps_that_take_edges_are_refused) {
 /* Two flat faces that are as good as folded when the solve begins may be folded on, here to 130 degrees; others are kept
    from it for a while, also if they are at a right angle or bent more. */
 GPROJT_TEST(folds_are_let_go) {
-    static const double turns[6] = {119.5, 119.8, 117, 100, 90, 80}; /* degrees between the normals when the solve begins */
+    static const double turns[6] = {119.5, 119.8, 117,
+                                    100,   90,    80}; /* degrees between the normals when the solve begins */
     static const int32_t free_end[2] = {4, 5};
     int32_t iterations[6], i;
     for (i = 0; i < 6; ++i) {
@@ -801,8 +802,7 @@ typedef struct gprojt_steering {
 
 static bool gprojt_steer_late(void *user, gproj_system *system, const gproj_iteration *iteration) {
     const gprojt_steering *steering = (const gprojt_steering *)user;
-    if (iteration->number == steering->at)
-        gproj_system_set_schedule(system, steering->group, gproj_keep(2));
+    if (iteration->number == steering->at) gproj_system_set_schedule(system, steering->group, gproj_keep(2));
     return true;
 }
 
@@ -1135,15 +1135,36 @@ GPROJT_TEST(ends_are_compared) {
         for (j = 0; j < 8; ++j) GPROJT_CHECK((gprojt_inside_lack(&end[i]) < gprojt_inside_lack(&end[j])) == (i < j));
 }
 
+/* A wavy hexagon of 4 edges a side, filled with quads that meet in threes at places, and refined. */
+static gproj_mesh *gprojt_hexagonal_patch(int32_t levels) {
+    gproj_subdivide_options how;
+    gproj_mesh *coarse, *mesh;
+    double point[72];
+    int32_t i;
+    for (i = 0; i < 24; ++i) {
+        double t = (i % 4) / 4.0, from = 3.14159265358979323846 / 3 * (i / 4), to = from + 3.14159265358979323846 / 3;
+        double angle = from + t * (to - from);
+        point[3 * i] = 4 * ((1 - t) * cos(from) + t * cos(to));
+        point[3 * i + 1] = 4 * ((1 - t) * sin(from) + t * sin(to));
+        point[3 * i + 2] = 0.8 * sin(2 * angle + 0.7) + 0.25 * cos(3 * angle);
+    }
+    coarse = gproj_mesh_fill(24, point, NULL, NULL, NULL, NULL);
+    memset(&how, 0, sizeof how);
+    how.levels = levels;
+    mesh = gproj_mesh_subdivide(coarse, &how, NULL, NULL, NULL);
+    gproj_mesh_destroy(coarse);
+    return mesh;
+}
+
 /* A smooth solve that is saved after each of its iterations ends with the same bytes when it is resumed, in the same form
    and in a new one. */
 GPROJT_TEST(frames_and_states) {
     gproj_solve_options options = gprojt_smooth();
     int32_t at, most = 1;
     int kind;
-    for (kind = 0; kind < 3; ++kind)
+    for (kind = 0; kind < 4; ++kind)
         for (at = 0, most = 1; at < most; at += GPROJT_SAVED_AFTER) {
-            gproj_mesh *mesh[2] = {gprojt_twisted(7, 0.15), gprojt_twisted(7, 0.15)};
+            gproj_mesh *mesh[2];
             gproj_form *form[2];
             gproj_result result;
             gproj_error error;
@@ -1152,10 +1173,11 @@ GPROJT_TEST(frames_and_states) {
             size_t size;
             int32_t k;
             for (k = 0; k < 2; ++k) {
+                mesh[k] = kind == 3 ? gprojt_hexagonal_patch(1) : gprojt_twisted(7, 0.15); /* the hexagon ripples */
                 form[k] = gproj_form_create(mesh[k], NULL);
-                (kind == 0   ? gprojt_add_planar
-                 : kind == 1 ? gprojt_add_circular
-                             : gprojt_add_carrying)(form[k], mesh[k]);
+                (kind == 0 || kind == 3 ? gprojt_add_planar
+                 : kind == 1            ? gprojt_add_circular
+                                        : gprojt_add_carrying)(form[k], mesh[k]);
             }
             GPROJT_CHECK(gproj_solve_begin(form[0], 60, &options, NULL));
             for (k = 0; k < at && gproj_solve_is_on(form[0]); ++k) gproj_solve_advance(form[0], 0);
@@ -1472,6 +1494,163 @@ GPROJT_TEST(metrics_come_and_go) {
     gproj_mesh_destroy(mesh);
 }
 
+/* -- ripples -- */
+
+/* The root mean square of the angles between neighbouring faces, by their vectorial areas. */
+static double gprojt_bend(const gproj_mesh *mesh) {
+    double sum = 0;
+    int32_t e, k, count = 0;
+    for (e = 0; e < mesh->edge_count; ++e) {
+        double n[2][3], cross[3], across;
+        if (mesh->face[2 * e] < 0 || mesh->face[2 * e + 1] < 0) continue;
+        for (k = 0; k < 2; ++k) {
+            int32_t h = mesh->face_halfedge[mesh->face[2 * e + k]], first = h;
+            n[k][0] = n[k][1] = n[k][2] = 0;
+            do {
+                const double *a = mesh->position + 3 * mesh->origin[h];
+                const double *b = mesh->position + 3 * mesh->origin[mesh->next[h]];
+                n[k][0] += a[1] * b[2] - a[2] * b[1];
+                n[k][1] += a[2] * b[0] - a[0] * b[2];
+                n[k][2] += a[0] * b[1] - a[1] * b[0];
+                h = mesh->next[h];
+            } while (h != first);
+        }
+        cross[0] = n[0][1] * n[1][2] - n[0][2] * n[1][1];
+        cross[1] = n[0][2] * n[1][0] - n[0][0] * n[1][2];
+        cross[2] = n[0][0] * n[1][1] - n[0][1] * n[1][0];
+        across = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+        sum += pow(atan2(across, n[0][0] * n[1][0] + n[0][1] * n[1][1] + n[0][2] * n[1][2]), 2);
+        ++count;
+    }
+    return sqrt(sum / count);
+}
+
+/* Faces of refined meshes become flat with little bending to and fro: the mean angle grows 1.0 times, on the finer mesh 1.5
+   times, and 2.9 times with a fixed boundary. With steps without second differences these are 2.1, 4.3 and 5.1. */
+GPROJT_TEST(fine_meshes_do_not_ripple) {
+    int32_t levels, fixed;
+    for (fixed = 0; fixed < 2; ++fixed)
+        for (levels = 2; levels <= (fixed ? 2 : 3); ++levels) {
+            gproj_mesh *mesh = gprojt_hexagonal_patch(levels);
+            gproj_form *form = gproj_form_create(mesh, NULL);
+            gproj_solve_options options = gprojt_smooth();
+            double before = gprojt_bend(mesh), after;
+            gproj_result result;
+            gprojt_add_planar(form, NULL);
+            if (fixed) gproj_add_fixed_boundary(form, 1);
+            result = gproj_solve(form, 100, &options);
+            GPROJT_CHECK(gprojt_is_sound(&result) && (fixed || result.iterations <= 7));
+            after = gprojt_bend(mesh);
+            if (after > (fixed ? 4 : levels == 2 ? 1.2 : 2) * before) printf("  %g -> %g\n", before, after);
+            GPROJT_CHECK(after <= (fixed ? 4 : levels == 2 ? 1.2 : 2) * before);
+            gproj_form_destroy(form);
+            gproj_mesh_destroy(mesh);
+        }
+}
+
+/* What a second difference is, in one coordinate: twice the mean of the neighbours by inverse distances at the beginning,
+   minus twice the middle. */
+static double gprojt_second(const double *began, const double *x, int32_t middle, int32_t count, const int32_t *ring,
+                            int32_t coordinate) {
+    double sum = 0, weights = 0;
+    int32_t i, k;
+    for (i = 0; i < count; ++i) {
+        double square = 0, weight;
+        for (k = 0; k < 3; ++k) square += pow(began[3 * ring[i] + k] - began[3 * middle + k], 2);
+        weight = 1 / sqrt(square);
+        sum += weight * x[3 * ring[i] + coordinate];
+        weights += weight;
+    }
+    return 2 * sum / weights - 2 * x[3 * middle + coordinate];
+}
+
+/* The rows are second differences of the way from the beginning: of opposite neighbours around vertices with four edges, of
+   all around others, along the boundary at the boundary. In the second of two solves they are of the second beginning. */
+GPROJT_TEST(second_differences_of_the_way) {
+    gproj_mesh *mesh = gprojt_hexagonal_patch(2);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_solve_options options = gprojt_smooth();
+    int32_t round, v, k, i, irregular = 0;
+    gprojt_add_planar(form, NULL);
+    for (round = 0; round < 2; ++round) {
+        double *began = gprojt_keep(mesh), scale;
+        gproj_system *system = gproj_form_system(form);
+        int32_t group = 0, row = 0;
+        gproj_solve(form, 2, &options);
+        while (strcmp(gproj_system_group_info(system, group).name, "smooth bending") != 0) ++group;
+        gproj_form_units(form, NULL, &scale);
+        for (v = 0; v < mesh->vertex_count; ++v) {
+            int32_t ring[16], count = gproj_mesh_one_ring(mesh, v, ring, 16), pairs = 1, pair;
+            if (gproj_mesh_is_boundary_vertex(mesh, v)) {
+                int32_t h = mesh->vertex_halfedge[v];
+                ring[0] = mesh->origin[mesh->prev[h]], ring[1] = mesh->origin[mesh->next[h]], count = 2;
+            } else if (count == 4) {
+                i = ring[1], ring[1] = ring[2], ring[2] = i;
+                count = 2, pairs = 2;
+            } else {
+                ++irregular;
+            }
+            for (pair = 0; pair < pairs; ++pair)
+                for (k = 0; k < 3; ++k, ++row) {
+                    double was = gprojt_second(began, began, v, count, ring + 2 * pair, k);
+                    double is = gprojt_second(began, mesh->position, v, count, ring + 2 * pair, k);
+                    GPROJT_NEAR(gproj_system_row_value(system, group, row, NULL), scale * (is - was), 1e-9);
+                }
+        }
+        GPROJT_CHECK(gproj_system_group_info(system, group).rows == row && irregular > 0);
+        for (v = 0; v < 3 * mesh->vertex_count; ++v) mesh->position[v] = began[v] * (v % 3 == 2 ? 1.2 : 1);
+        free(began);
+    }
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* Small meshes, meshes that do not ripple, and steps that are not measured have no second differences. */
+GPROJT_TEST(second_differences_where_they_help) {
+    gproj_mesh *mesh[3] = {gprojt_twisted(9, 0.3), gprojt_twisted(12, 0.05), gprojt_twisted(12, 0.3)};
+    gproj_solve_options options = gprojt_smooth();
+    int32_t i;
+    for (i = 0; i < 3; ++i) {
+        gproj_form *form = gproj_form_create(mesh[i], NULL);
+        gprojt_add_planar(form, NULL);
+        if (i != 1) gproj_add_fixed_boundary(form, 1);
+        gproj_solve(form, 100, &options);
+        GPROJT_CHECK((gprojt_group_named(form, "smooth bending").rows > 0) == (i == 2));
+        options.skip_closeness = true; /* steps are not measured */
+        gproj_solve(form, 100, &options);
+        GPROJT_CHECK(gprojt_group_named(form, "smooth bending").rows == 0);
+        options.skip_closeness = false;
+        gproj_form_destroy(form);
+        gproj_mesh_destroy(mesh[i]);
+    }
+}
+
+/* A state that has second differences, but no group for them, and one that has neither some nor none. */
+GPROJT_TEST(forged_ripples_are_refused) {
+    gproj_mesh *mesh = gprojt_twisted(3, 0.1);
+    gproj_form *form = gproj_form_create(mesh, NULL);
+    gproj_error error;
+    uint8_t *state;
+    size_t size, at;
+    int way;
+    gprojt_add_planar(form, NULL);
+    size = gproj_state_size(form);
+    state = (uint8_t *)malloc(size);
+    GPROJT_REQUIRE(state && gproj_state_save(form, state, size, NULL) == GPROJ_OK);
+    at = 24 + 4 + (size_t)gprojt_read_integer(state + 24);
+    for (way = 1; way <= 2; ++way) {
+        state[at] = (uint8_t)way;
+        gprojt_seal(state, size);
+        GPROJT_CHECK(gproj_state_restore(form, state, size, &error) == GPROJ_ERROR_SYNTAX);
+        GPROJT_CHECK(strstr(error.message, way == 1 ? "second differences have no group" : "neither on nor off"));
+    }
+    free(state);
+    gproj_form_destroy(form);
+    gproj_mesh_destroy(mesh);
+}
+
+/* -- the metrics -- */
+
 /* Steps are measured by the change of each vertex and of each edge, and of each force that there is, the first one included. */
 GPROJT_TEST(metrics_measure_all) {
     static const int32_t pins[3] = {3, 18, 35};
@@ -1610,6 +1789,9 @@ GPROJT_TEST(every_allocation_fails_once) {
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_circular, NULL, 30, &options) >= 30);
     GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_carrying, mesh, 30, &options) >= 30);
     gproj_mesh_destroy(mesh);
+    mesh = gprojt_hexagonal_patch(1); /* with second differences */
+    GPROJT_CHECK(gprojt_fail_every_allocation_of_solve(mesh, gprojt_add_planar, NULL, 30, &options) >= 30);
+    gproj_mesh_destroy(mesh);
     mesh = gprojt_twisted(3, 0.3);
     GPROJT_CHECK(gprojt_fail_every_allocation(gprojt_solve_twice, mesh) >= 30);
     gproj_mesh_destroy(mesh);
@@ -1621,8 +1803,8 @@ GPROJT_TEST(every_allocation_fails_once) {
     gproj_mesh_destroy(mesh);
 }
 
-/* A state saved amid a smooth or a nearest solve, or one with weights and coefficients of its own, comes into a fresh
-   form. */
+/* A state saved amid a smooth solve (3: with second differences) or a nearest one, or one with weights and coefficients of
+   its own, comes into a fresh form. */
 typedef struct gprojt_saved {
     int way;
     uint8_t *state;
@@ -1630,16 +1812,20 @@ typedef struct gprojt_saved {
     double *end;
 } gprojt_saved;
 
+static gproj_mesh *gprojt_mesh_to_restore(int way) {
+    return way == 3 ? gprojt_hexagonal_patch(1) : gprojt_twisted(4, 0.3);
+}
+
 static gproj_form *gprojt_form_to_restore(gproj_mesh *mesh, const gproj_host *host, int way) {
     gproj_form *form = gproj_form_create(mesh, host);
-    gprojt_add_planar_fixed(form, NULL);
+    (way == 3 ? gprojt_add_planar : gprojt_add_planar_fixed)(form, NULL);
     if (way == 2) gproj_add_fairness(form, 0.1);
     return form;
 }
 
 static bool gprojt_restore(const gproj_host *host, void *user) {
     gprojt_saved *saved = (gprojt_saved *)user;
-    gproj_mesh *mesh = gprojt_twisted(4, 0.3);
+    gproj_mesh *mesh = gprojt_mesh_to_restore(saved->way);
     gproj_form *form = gprojt_form_to_restore(mesh, host, saved->way);
     gproj_error error;
     gproj_code code = gproj_state_restore(form, saved->state, saved->size, &error);
@@ -1656,16 +1842,17 @@ static bool gprojt_restore(const gproj_host *host, void *user) {
 GPROJT_TEST(restored_without_memory) {
     static const double own[3] = {1, -0.25, -0.75};
     gprojt_saved saved;
-    for (saved.way = 0; saved.way < 3; ++saved.way) {
-        gproj_mesh *mesh = gprojt_twisted(4, 0.3);
+    for (saved.way = 0; saved.way < 4; ++saved.way) {
+        gproj_mesh *mesh = gprojt_mesh_to_restore(saved.way);
         gproj_form *form = gprojt_form_to_restore(mesh, NULL, saved.way);
         gproj_solve_options options = gprojt_smooth();
         const int32_t face = 5;
         const double half = 0.5;
         int32_t k;
-        options.smooth = saved.way == 0, options.nearest = saved.way == 1;
-        if (saved.way < 2) GPROJT_CHECK(gproj_solve_begin(form, 20, &options, NULL));
-        for (k = 0; saved.way < 2 && k < 3; ++k) gproj_solve_advance(form, 0);
+        options.smooth = saved.way == 0 || saved.way == 3, options.nearest = saved.way == 1;
+        if (saved.way != 2) GPROJT_CHECK(gproj_solve_begin(form, 20, &options, NULL));
+        for (k = 0; saved.way != 2 && k < 3; ++k) gproj_solve_advance(form, 0);
+        if (saved.way == 3) GPROJT_CHECK(gprojt_group_named(form, "smooth bending").rows > 0);
         if (saved.way == 2) gproj_set_element_weights(form, 0, 1, &face, &half);
         if (saved.way == 2) gproj_system_set_row(gproj_form_system(form), 2, 5, own, 0);
         saved.size = gproj_state_size(form);
@@ -1824,6 +2011,10 @@ int main(void) {
     GPROJT_RUN(attempts_after_the_nearest_are_resumed);
     GPROJT_RUN(metrics_come_and_go);
     GPROJT_RUN(metrics_measure_all);
+    GPROJT_RUN(fine_meshes_do_not_ripple);
+    GPROJT_RUN(second_differences_of_the_way);
+    GPROJT_RUN(second_differences_where_they_help);
+    GPROJT_RUN(forged_ripples_are_refused);
     GPROJT_RUN(points_are_solved);
     GPROJT_RUN(faces_in_one_point);
     GPROJT_RUN(solved_again);
