@@ -117,6 +117,27 @@ static inline void gprojt_bulge(gproj_mesh *mesh, uint64_t seed) {
     gprojt_shake(mesh, 0.07, seed);
 }
 
+/* A wavy hexagon of 4 edges a side, filled with quads that meet in threes at places, and refined. */
+static inline gproj_mesh *gprojt_hexagonal_patch(int32_t levels) {
+    gproj_subdivide_options how;
+    gproj_mesh *coarse, *mesh;
+    double point[72];
+    int32_t i;
+    for (i = 0; i < 24; ++i) {
+        double t = (i % 4) / 4.0, from = 3.14159265358979323846 / 3 * (i / 4), to = from + 3.14159265358979323846 / 3;
+        double angle = from + t * (to - from);
+        point[3 * i] = 4 * ((1 - t) * cos(from) + t * cos(to));
+        point[3 * i + 1] = 4 * ((1 - t) * sin(from) + t * sin(to));
+        point[3 * i + 2] = 0.8 * sin(2 * angle + 0.7) + 0.25 * cos(3 * angle);
+    }
+    coarse = gproj_mesh_fill(24, point, NULL, NULL, NULL, NULL);
+    memset(&how, 0, sizeof how);
+    how.levels = levels;
+    mesh = gproj_mesh_subdivide(coarse, &how, NULL, NULL, NULL);
+    gproj_mesh_destroy(coarse);
+    return mesh;
+}
+
 /* A generated mesh whose noise is `noise` mean edges. */
 static inline gproj_mesh *gprojt_noisy(int shape, int32_t n, double noise, uint64_t seed) {
     gproj_mesh *mesh = gprojt_mesh_of(gprojt_shape(shape, n));
