@@ -1556,10 +1556,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      stay fair that way, and move farther for it. If nothing is wished the way from the beginning of the solve is
      measured like that, as long as steps go well, so that it ends near the smoothest change of all. No closeness is
      added. Forces are measured, too, if steps fail.
-   - If one of the first four steps makes planar faces bend to and fro from row to row, half as much again as at the
-     beginning and more, second differences |d_i - 2 d_j + d_k| along the polylines of edges are measured as well, with
-     the weight 0.15 sqrt(F) beside the others (F faces, 100 or more), and the step is found again: fine meshes end
-     without ripples, and move a little farther.
+   - If one of the first four steps makes planar faces bend to and fro from row to row, to more than twice what there
+     was at the beginning, second differences |d_i - 2 d_j + d_k| along the polylines of edges are measured as well,
+     with the weight 0.15 sqrt(F) beside the others (F faces, 100 or more), and the step is found again: fine meshes end
+     with hardly any ripples, and move a little farther.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
@@ -22466,7 +22466,7 @@ GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
    for a smooth surface. The length is a part of the mesh's size, so that meshes end as smooth at all resolutions. Where
    no step ripples they are left out, for meshes move farther with them. */
 
-static const double gproji_ripple_more = 1.5;    /* a step ripples if there is so many times what there was, */
+static const double gproji_ripple_more = 2;      /* a step ripples if there is so many times what there was, */
 static const double gproji_ripple_least = 0.005; /* and so much more: an angle, half of it between faces */
 static const double gproji_ripple_stiff = 0.05;  /* the least stiffness at which steps are looked at */
 /* The length, times the root of the number of faces: in edges. In small meshes, where it is shorter than the second, no
