@@ -18878,7 +18878,7 @@ typedef enum gproji_own {
     GPROJI_OWN_CORNERS,
     GPROJI_OWN_BRAKE,
     GPROJI_OWN_FAIRNESS,
-    GPROJI_OWN_BENDING,
+    GPROJI_OWN_SECOND,
     GPROJI_OWN_COUNT
 } gproji_own;
 
@@ -22466,20 +22466,19 @@ GPROJI_INTERNAL gproji_part *gproji_acting_corners(const gproj_form *form) {
    for a smooth surface. The length is a part of the mesh's size, so that meshes end as smooth at all resolutions. Where
    no step ripples they are left out, for meshes move farther with them. */
 
-static const double gproji_ripple_more = 2;      /* a step ripples if there is so many times what there was, */
-static const double gproji_ripple_least = 0.005; /* and so much more: an angle, half of it between faces */
-static const double gproji_ripple_stiff = 0.05;  /* the least stiffness at which steps are looked at */
-/* The length, times the root of the number of faces: in edges. In small meshes, where it is shorter than the second, no
-   step is looked at: they are hardly longer than a ripple. */
-static const double gproji_bending_part = 0.15, gproji_bending_least = 1.5;
-static const double gproji_bending_nearest = 1e-3; /* shorter edges weigh no more */
+static const double gproji_ripple_more = 2;       /* a step ripples if there is so many times what there was, */
+static const double gproji_ripple_least = 0.005;  /* and so much more: twice an angle between neighbours */
+static const double gproji_ripple_stiff = 0.05;   /* the least stiffness at which steps are looked at */
+static const double gproji_second_part = 0.15;    /* the length, times the root of the number of faces: in edges */
+static const double gproji_second_nearest = 1e-3; /* shorter edges weigh no more */
 enum {
     GPROJI_RIPPLE_STEPS = 4,   /* that many are looked at: later ones are short, or all goes wrong */
-    GPROJI_BENDING_VALENCE = 8 /* at vertices with more edges there are no second differences */
+    GPROJI_RIPPLE_FACES = 100, /* in smaller meshes the length is hardly that of a ripple: none are looked at */
+    GPROJI_SECOND_VALENCE = 8  /* at vertices with more edges there are no second differences */
 };
 
-static const gproji_rule gproji_bending_rule = {"smooth bending",   GPROJ_WISH,    GPROJ_PLACE_NONE,
-                                                GPROJI_OWN_BENDING, GPROJI_METRIC, NULL};
+static const gproji_rule gproji_second_rule = {"second differences", GPROJ_WISH,    GPROJ_PLACE_NONE,
+                                               GPROJI_OWN_SECOND,    GPROJI_METRIC, NULL};
 
 /* How much faces bend to and fro: the root mean square of n_a - 2 n + n_b, the unit normals of a face and of its
    neighbours at opposite edges. Overwrites work.area. */
@@ -22507,34 +22506,34 @@ GPROJI_INTERNAL double gproji_find_ripple(const gproj_form *form, const double *
     return count > 0 ? sqrt(sum / (double)count) : 0;
 }
 
-/* Lets second differences act, as seen from where the solve began; adds them, if there are none yet. A vertex is
-   in the middle of two if it has four edges, across opposite ones; else of one, to all its neighbours, and at the
-   boundary to those along that. Neighbours weigh by the inverse of their distance: a change that is even in space, and
-   not in numbers of edges, has none. */
-GPROJI_INTERNAL void gproji_let_bend(const gproji_part *part) {
+/* Sets the second differences of the way from where the solve began; adds them, if there are none yet. `act`: with a
+   weight. A vertex is in the middle of two if it has four edges, across opposite ones; else of one, to all its
+   neighbours, and at the boundary to those along that. Neighbours weigh by the inverse of their distance: a change that
+   is even in space, and not in numbers of edges, has none. */
+GPROJI_INTERNAL void gproji_set_second(const gproji_part *part, bool act) {
     const gproj_form *form = part->form;
     const gproj_mesh *mesh = form->mesh;
-    double weight = gproji_bending_part * sqrt((double)mesh->face_count);
+    double weight = act ? gproji_second_part * sqrt((double)mesh->face_count) : 0;
     int32_t rows = gproji_group_at(form->system, part->group)->row_count, row = 0, v, i, k;
     for (v = 0; v < mesh->vertex_count; ++v) {
-        double place[GPROJI_BENDING_VALENCE + 1][3], close[GPROJI_BENDING_VALENCE + 1]; /* 0: the middle */
-        int32_t ring[GPROJI_BENDING_VALENCE + 1], count = gproj_mesh_valence(mesh, v), every, first;
+        double place[GPROJI_SECOND_VALENCE + 1][3], close[GPROJI_SECOND_VALENCE + 1]; /* 0: the middle */
+        int32_t ring[GPROJI_SECOND_VALENCE + 1], count = gproj_mesh_valence(mesh, v), every, first;
         int32_t h = mesh->vertex_halfedge[v];
-        if (count == 0 || count > GPROJI_BENDING_VALENCE) continue;
+        if (count == 0 || count > GPROJI_SECOND_VALENCE) continue;
         if (gproj_mesh_is_boundary_vertex(mesh, v))
             ring[1] = mesh->origin[h ^ 1], ring[2] = mesh->origin[mesh->prev[h]], count = 2;
         else
             for (i = 1; i <= count; ++i, h = gproji_rotate(mesh, h)) ring[i] = mesh->origin[h ^ 1];
         for (ring[0] = v, i = 0; i <= count; ++i) {
             gproji_to_internal(form, form->before + 3 * (size_t)ring[i], place[i]);
-            close[i] = 1 / gproji_fmax(gproji_distance3(place[i], place[0]), gproji_bending_nearest);
+            close[i] = 1 / gproji_fmax(gproji_distance3(place[i], place[0]), gproji_second_nearest);
         }
         every = count == 4 ? 2 : 1;
         for (first = 1; first <= every; ++first) {
             double sum = 0;
             for (i = first; i <= count; i += every) sum += close[i];
             for (k = 0; k < 3; ++k, ++row) {
-                gproj_term term[GPROJI_BENDING_VALENCE + 1];
+                gproj_term term[GPROJI_SECOND_VALENCE + 1];
                 double began = -2 * place[0][k];
                 int32_t terms = 1;
                 gproji_set_term(&term[0], 3 * v + k, -1, -2);
@@ -22558,18 +22557,19 @@ GPROJI_INTERNAL void gproji_let_bend(const gproji_part *part) {
 GPROJI_INTERNAL bool gproji_inspect(void *user, const double *before, const double *x) {
     gproj_form *form = (gproj_form *)user;
     gproji_solve *solve = &form->solve;
-    const gproji_part *corners = gproji_acting_corners(form), *bending = gproji_own_part(form, GPROJI_OWN_BENDING);
-    const gproji_group *g = bending ? gproji_group_at(form->system, bending->group) : NULL;
+    const gproji_part *corners = gproji_acting_corners(form), *second = gproji_own_part(form, GPROJI_OWN_SECOND);
+    const gproji_group *g = second ? gproji_group_at(form->system, second->group) : NULL;
     bool violates = corners && gproji_seek_corners(corners, before, x, 0, true);
+    bool first = solve->loop.attempt.earlier == 0 && solve->loop.result.iterations < GPROJI_RIPPLE_STEPS;
+    bool stiff = g && g->weight >= gproji_ripple_stiff * g->schedule.weight;
     if (violates) {
         int32_t rounds = ++gproji_corners_of(corners)->rounds;
         gproji_seek_corners(corners, before, x, gproji_fmin(gproji_corner_margin * rounds, gproji_corner_margin_most),
                             false);
     }
     solve->ripples = false;
-    if (g && g->weight >= gproji_ripple_stiff * g->schedule.weight && solve->loop.attempt.earlier == 0 &&
-        solve->loop.result.iterations < GPROJI_RIPPLE_STEPS && g->row_count == 0 &&
-        gproji_bending_part * sqrt((double)form->mesh->face_count) >= gproji_bending_least) {
+    if (first && stiff && form->mesh->face_count >= GPROJI_RIPPLE_FACES &&
+        (g->row_count == 0 || g->row[0].weight == 0)) { /* they do not act yet */
         double began = gproji_find_ripple(form, form->before);
         solve->ripples = gproji_find_ripple(form, x) > gproji_ripple_more * began + gproji_ripple_least;
     }
@@ -22595,7 +22595,7 @@ GPROJI_INTERNAL bool gproji_wake(void *user) {
         woken = true;
     }
     if (woken) gproji_refresh_corners(part, system, part->group, NULL);
-    if (form->solve.ripples) gproji_let_bend(gproji_own_part(form, GPROJI_OWN_BENDING));
+    if (form->solve.ripples) gproji_set_second(gproji_own_part(form, GPROJI_OWN_SECOND), true);
     return woken || form->solve.ripples;
 }
 
@@ -23682,7 +23682,7 @@ GPROJI_INTERNAL void gproji_add_own_group(gproj_form *form, gproji_own own) {
     if (own == GPROJI_OWN_CORNERS) gproji_add_corners(form);
     if (own == GPROJI_OWN_FORCES) gproji_add_sign(form, &gproji_force_guidance_rule, 1, 0, NULL, 0);
     if (own == GPROJI_OWN_METRIC) gproji_add_metric(form);
-    if (own == GPROJI_OWN_BENDING) gproji_new_group(form, &gproji_bending_rule, 0);
+    if (own == GPROJI_OWN_SECOND) gproji_new_group(form, &gproji_second_rule, 0);
     if (own == GPROJI_OWN_BRAKE) gproji_add_sign(form, &gproji_force_change_rule, 1, 0, NULL, 0);
 }
 
@@ -23797,8 +23797,7 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, bends, anchored;
-    bool carries, whole, corners;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
     bool started = form->statics && form->statics->started;
     double wished = gproji_heaviest_wish(form->system, true);
     const gproji_part *part;
@@ -23814,10 +23813,10 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     anchored = metric && beginning->stiffness <= 1 && !(wished > 0);
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
-    bends = metric && gproji_is_on(form, form->planarity);
-    part = gproji_own_part(form, GPROJI_OWN_BENDING);
+    part = gproji_own_part(form, GPROJI_OWN_SECOND);
     if (part) gproji_renew_group(form->system, part->group, 0); /* until a step ripples */
-    gproji_schedule_own(form, GPROJI_OWN_BENDING, gproj_keep(bends ? gproji_metric_smooth : 0));
+    gproji_schedule_own(form, GPROJI_OWN_SECOND,
+                        gproj_keep(metric && gproji_is_on(form, form->planarity) ? gproji_metric_smooth : 0));
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
     /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. With
        forces that is for a shape that carries, so that its faces need not turn over to do so. */
@@ -24114,7 +24113,7 @@ GPROJ_API gproj_result gproj_solve_advance(gproj_form *form, double seconds) {
 
    gproji_pass_state describes the format (see >>stream):
 
-       8 bytes "gprojstN", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
+       8 bytes "gprojstO", 8 bytes for the whole size, 8 bytes fingerprint, the state, 8 bytes checksum
 
    The fingerprint is a hash of mesh, variables, and rows with their terms' variables, without the numbers that states
    have. A state is checked from beginning to end before any of it is read: a refused one leaves numbers as they are.
@@ -24153,11 +24152,11 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
         }
         part = gproji_part_of(form, group);
         gproji_pass_group(stream, form->system, group, kind != GPROJI_OWN_NONE,
-                          kind == GPROJI_OWN_BENDING ? GPROJI_PASS_NONE : passing);
+                          kind == GPROJI_OWN_SECOND ? GPROJI_PASS_NONE : passing);
         /* Second differences need no numbers but the positions before, which are there. */
-        if (kind == GPROJI_OWN_BENDING && passing && stream->mode == GPROJI_READ &&
+        if (kind == GPROJI_OWN_SECOND && passing && stream->mode == GPROJI_READ &&
             gproji_group_at(form->system, group)->row_count > 0)
-            gproji_let_bend(part);
+            gproji_set_second(part, true);
         if (part && part->rule->acts && part->rule->acts->pass) part->rule->acts->pass(part, stream, passing);
     }
     for (own = 1; stream->mode == GPROJI_READ && own < GPROJI_OWN_COUNT; ++own)
@@ -24170,7 +24169,7 @@ GPROJI_INTERNAL void gproji_pass_groups(gproji_stream *stream, gproj_form *form,
    found depends on them. */
 GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *form) {
     int32_t list[GPROJI_OWN_COUNT], count = 0, k, r;
-    bool in = gproji_comes_in(stream), bends, had;
+    bool in = gproji_comes_in(stream), second, had;
     gproji_corners *corners;
     gproji_part *part;
     for (k = 0; !in && k < gproj_system_group_count(form->system); ++k)
@@ -24182,13 +24181,13 @@ GPROJI_INTERNAL void gproji_pass_own_groups(gproji_stream *stream, gproj_form *f
         if (in && own > GPROJI_OWN_NONE && own < GPROJI_OWN_COUNT && (form->statics || !of_forces))
             gproji_add_own_group(form, (gproji_own)own);
     }
-    part = gproji_own_part(form, GPROJI_OWN_BENDING);
-    bends = had = part && gproji_group_at(form->system, part->group)->row_count > 0;
-    bends = gproji_pass_bool(stream, &bends);
-    if (bends && !part) gproji_fail_stream(stream, "second differences have no group");
-    if (bends && !had && part) gproji_let_bend(part);
+    part = gproji_own_part(form, GPROJI_OWN_SECOND);
+    second = had = part && gproji_group_at(form->system, part->group)->row_count > 0;
+    second = gproji_pass_bool(stream, &second);
+    if (second && !part) gproji_fail_stream(stream, "second differences have no group");
+    if (second && !had && part) gproji_set_second(part, false); /* they act once they are read */
     if (gproj_system_error(form->system)->code != GPROJ_OK) gproji_fail_stream_memory(stream);
-    if (had && !bends && stream->mode == GPROJI_READ) gproji_renew_group(form->system, part->group, 0);
+    if (had && !second && stream->mode == GPROJI_READ) gproji_renew_group(form->system, part->group, 0);
     part = gproji_own_part(form, GPROJI_OWN_CORNERS);
     corners = part ? gproji_corners_of(part) : NULL;
     count = part ? gproji_group_at(form->system, part->group)->row_count : 0;

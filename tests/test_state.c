@@ -700,6 +700,17 @@ static void gprojt_check_refused(gproj_form *form, const uint8_t *state, size_t 
     if (!strstr(error.message, words)) printf("  '%s' is not '%s'\n", error.message, words);
 }
 
+/* Takes the state of the first of several forms, which fits; it is refused by the others, that differ. */
+static uint8_t *gprojt_check_other(gproj_form *form, uint8_t *first, size_t *size) {
+    if (first) {
+        gprojt_check_refused(form, first, *size, GPROJ_ERROR_ARGUMENT, "another form");
+        return first;
+    }
+    first = gprojt_save(form, size);
+    GPROJT_CHECK(gproj_state_restore(form, first, *size, NULL) == GPROJ_OK);
+    return first;
+}
+
 /* A form in the middle of a solve, and its state. */
 static gproj_form *gprojt_form_in_frames(gproj_mesh *mesh, uint8_t **state, size_t *size) {
     gproj_form *form = gprojt_design(mesh, GPROJT_GLIDING, NULL);
@@ -1295,12 +1306,7 @@ GPROJT_TEST(states_of_other_groups) {
         g = gproj_system_add_group(s, &group);
         gproj_system_add_row(s, g, kinds[k].terms, terms, 0, kinds[k].element);
         gproj_system_add_row(s, g, 3 - kinds[k].terms, terms + kinds[k].terms, 0, 0);
-        if (k == 0) {
-            state = gprojt_save(form, &size);
-            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
-        } else {
-            gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
-        }
+        state = gprojt_check_other(form, state, &size);
         gproj_form_destroy(form);
     }
     gproj_mesh_destroy(mesh);
@@ -1326,12 +1332,7 @@ GPROJT_TEST(states_of_other_loads) {
         if (k != 1) loads.edge_density = edge;
         loads.point_load = point;
         GPROJT_CHECK(gproj_add_equilibrium(form, &loads, &supports, 1) >= 0);
-        if (k == 0) {
-            state = gprojt_save(form, &size);
-            GPROJT_CHECK(gproj_state_restore(form, state, size, NULL) == GPROJ_OK);
-        } else {
-            gprojt_check_refused(form, state, size, GPROJ_ERROR_ARGUMENT, "another form");
-        }
+        state = gprojt_check_other(form, state, &size);
         gproj_form_destroy(form);
     }
     free(state), free(edge), free(point);

@@ -1650,8 +1650,7 @@ static const tool_option options[] = {
      SETS(sides), .needs = &a_curve},
     {"diagonals", "",
      "the mesh along the diagonals: a vertex amid each edge, a face for each face and for each vertex; for meshes "
-     "whose "
-     "edges follow the asymptotic directions of a saddle-shaped surface, in which faces cannot become flat",
+     "whose edges follow the asymptotic directions of a saddle-shaped surface, in which faces cannot become flat",
      set_flag, SETS(diagonals), .kind = BEGINNING},
     {"subdivide", "N[,loop]",
      "the input is a cage: N times each face becomes quads about its middle (Catmull and Clark), with ,loop each "
@@ -1670,10 +1669,10 @@ static const tool_option options[] = {
     {"state", "FILE",
      "where FILE exists, the work goes on from there: it was written with the same input and options, but for "
      "outputs, --time-limit, --iterations and --threads. At the end the state is written to it. With --time-limit or "
-     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome \"time "
-     "out\" "
-     "in --report, until it has ended. Then further runs take no step and give the same verdict. Such work is one "
-     "attempt; without --state others may follow one that ends badly",
+     "--iterations, then those of this run, long work can be done in parts: exit status 1, and the outcome "
+     "\"time out\" in --report, until it has ended. Then further runs take no step and give the same verdict. Such "
+     "work "
+     "is one attempt; without --state others may follow one that ends badly",
      set_output, SETS(output[OUTPUT_STATE])},
 
     {"planar", "[=W]", "all faces are planar", set_must, PLACE(planar), HARD, SHAPES, .build = gproj_add_planarity,
