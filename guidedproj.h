@@ -1556,10 +1556,10 @@ GPROJ_API bool gproj_form_is_corner(const gproj_form *form, int32_t vertex);
      stay fair that way, and move farther for it. If nothing is wished the way from the beginning of the solve is
      measured like that, as long as steps go well, so that it ends near the smoothest change of all. No closeness is
      added. Forces are measured, too, if steps fail.
-   - If one of the first four steps makes planar faces bend to and fro from row to row, to more than twice what there
-     was at the beginning, second differences |d_i - 2 d_j + d_k| along the polylines of edges are measured as well,
-     with the weight 0.15 sqrt(F) beside the others (F faces, 100 or more), and the step is found again: fine meshes end
-     with hardly any ripples, and move a little farther.
+   - If, without forces, one of the first four steps makes planar faces bend to and fro from row to row, to more than
+     twice what there was at the beginning, second differences |d_i - 2 d_j + d_k| along the polylines of edges are
+     measured as well, with the weight 0.15 sqrt(F) beside the others (F faces, 100 or more), and the step is found
+     again: fine meshes end with hardly any ripples, and move a little farther.
    - Normals, axis points and axes of cones take their best values after each step, and a step that falls short is bent
      by the error of the linearised rows: full steps are good ones then, and their number hardly depends on how fine the
      mesh is.
@@ -23797,7 +23797,8 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     bool nearest = options && options->nearest;
     bool smooth = options && options->smooth && !nearest;
     bool skip_guard = options && options->skip_guard, skip_closeness = options && options->skip_closeness;
-    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, anchored, carries, whole, corners;
+    bool forces = form->statics && gproji_is_on(form, form->statics->group), metric, ripples;
+    bool anchored, carries, whole, corners;
     bool started = form->statics && form->statics->started;
     double wished = gproji_heaviest_wish(form->system, true);
     const gproji_part *part;
@@ -23813,10 +23814,11 @@ GPROJI_INTERNAL bool gproji_begin_solve(gproj_form *form, int32_t iterations, co
     anchored = metric && beginning->stiffness <= 1 && !(wished > 0);
     part = gproji_schedule_own(form, GPROJI_OWN_METRIC, gproj_keep(metric ? gproji_metric_smooth : 0));
     if (part && metric) gproji_set_metric(form, part->group);
+    /* Second differences come in once a step ripples. With forces as many meshes end whole without (statics_suite). */
     part = gproji_own_part(form, GPROJI_OWN_SECOND);
-    if (part) gproji_renew_group(form->system, part->group, 0); /* until a step ripples */
-    gproji_schedule_own(form, GPROJI_OWN_SECOND,
-                        gproj_keep(metric && gproji_is_on(form, form->planarity) ? gproji_metric_smooth : 0));
+    if (part) gproji_renew_group(form->system, part->group, 0);
+    ripples = metric && gproji_is_on(form, form->planarity) && !forces;
+    gproji_schedule_own(form, GPROJI_OWN_SECOND, gproj_keep(ripples ? gproji_metric_smooth : 0));
     gproji_schedule_own(form, GPROJI_OWN_BRAKE, gproj_keep(metric && forces ? gproji_metric_force : 0));
     /* Faces are guarded where wishes guide, and a little longer; in smooth solves their corners are kept instead. With
        forces that is for a shape that carries, so that its faces need not turn over to do so. */
